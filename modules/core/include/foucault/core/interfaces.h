@@ -1,0 +1,47 @@
+#pragma once
+
+#include <optional>
+
+#include "foucault/core/measurement.h"
+#include "foucault/core/result.h"
+
+/// The three roles data walks through: Source -> Estimator -> Sink. Each streams: memory does not
+/// grow with the length of a log.
+namespace foucault {
+
+/// How the IMU sits in the vehicle.
+struct Mounting {
+  Eigen::Quaterniond q_v_b = Eigen::Quaterniond::Identity();  ///< b to forward-right-down
+};
+
+/// Time-ordered measurements (order: see Measurement).
+/// next() throws DataError on damaged or inconsistent input.
+class Source {
+ public:
+  virtual ~Source() = default;
+  virtual std::optional<Measurement> next() = 0;
+  /// Known from construction on.
+  virtual const Mounting& mounting() const = 0;
+  /// How much of the input has been read, 0 to 1; for progress.
+  virtual double progress() const = 0;
+};
+
+/// Takes what an estimator gives out. Calls come in order of stamps.
+class Sink {
+ public:
+  virtual ~Sink() = default;
+  virtual void epoch(const Epoch&) {}
+  virtual void fix(const FixResult&) {}
+  virtual void notice(const Notice&) {}
+};
+
+/// Turns measurements into epochs, which go to the sink it was built with.
+class Estimator {
+ public:
+  virtual ~Estimator() = default;
+  virtual void process(const Measurement& measurement) = 0;
+  /// The stream is over: give out what is still held back.
+  virtual void finish() = 0;
+};
+
+}  // namespace foucault

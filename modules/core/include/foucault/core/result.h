@@ -1,0 +1,56 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "foucault/core/measurement.h"
+#include "foucault/core/state.h"
+
+/// What estimators give out, as plain values.
+namespace foucault {
+
+/// A navigation solution of the IMU centre at one stamp, in the local North-East-Down of that place.
+struct Epoch {
+  int64_t t_ns = 0;
+  Geodetic position;
+  Eigen::Vector3d velocity_n = Eigen::Vector3d::Zero();               ///< [m/s]
+  Eigen::Quaterniond q_n_b = Eigen::Quaterniond::Identity();
+  ImuBias bias;
+  /// Error covariance, order of error_state: dp and dv in local NED, dtheta in b.
+  Matrix15d covariance = Matrix15d::Zero();
+};
+
+enum class FixVerdict { used, bad_sigma, gated, low_quality, out_of_order };
+
+/// What became of a fix. The innovation is the fix minus its prediction before it is used.
+struct FixResult {
+  int64_t t_ns = 0;
+  FixVerdict verdict = FixVerdict::used;
+  FixQuality quality = FixQuality::unknown;
+  Geodetic antenna;
+  Eigen::Vector3d innovation_n = Eigen::Vector3d::Zero();           ///< north, east, down [m]
+  Eigen::Matrix3d innovation_covariance = Eigen::Matrix3d::Zero();  ///< [m^2], of the innovation
+  Eigen::Vector3d postfit_n = Eigen::Vector3d::Zero();  ///< fix minus estimate after use [m]
+};
+
+enum class NoticeKind { aligned, imu_gap, realigned, fix_rejected, skipped };
+
+/// Something that happened on the way and that a user should know.
+struct Notice {
+  int64_t t_ns = 0;
+  NoticeKind kind = NoticeKind::skipped;
+  std::string text;  ///< one line
+};
+
+/// Estimate minus reference at one stamp.
+struct ReferenceError {
+  int64_t t_ns = 0;
+  Eigen::Vector3d position_n = Eigen::Vector3d::Zero();  ///< north, east, down [m]
+  std::optional<Eigen::Vector3d> velocity_n;             ///< [m/s]
+  std::optional<Eigen::Vector3d> euler;                  ///< roll, pitch, heading [rad], wrapped
+};
+
+}  // namespace foucault

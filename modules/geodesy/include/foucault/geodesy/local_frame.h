@@ -1,0 +1,40 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "foucault/core/measurement.h"
+
+namespace foucault {
+
+/// The world frame w: North-East-Down at an origin, fixed to the Earth, Cartesian.
+/// Everything goes through ECEF, so nothing in it is flat: heights and directions far from the
+/// origin come out right. Units m, rad.
+class LocalFrame {
+ public:
+  explicit LocalFrame(const Geodetic& origin);
+
+  const Geodetic& origin() const { return origin_; }
+
+  Eigen::Vector3d to_local(const Geodetic& position) const;
+  Geodetic to_geodetic(const Eigen::Vector3d& p_w) const;
+
+  /// Rotation from the NED of `position` to w; identity at the origin.
+  Eigen::Matrix3d R_w_n(const Geodetic& position) const;
+
+  /// Earth rate in w [rad/s], the same everywhere. Paper (10).
+  const Eigen::Vector3d& earth_rate_w() const { return earth_rate_w_; }
+
+  /// Normal gravity at the origin [m/s^2]. Paper (9).
+  Eigen::Vector3d gravity_w() const;
+
+  /// Normal gravity vector at p_w, in w [m/s^2]: its direction turns with the place.
+  Eigen::Vector3d gravity_w(const Eigen::Vector3d& p_w) const;
+
+ private:
+  Geodetic origin_;
+  Eigen::Vector3d origin_e_;
+  Eigen::Matrix3d R_e_w_;
+  Eigen::Vector3d earth_rate_w_;
+};
+
+}  // namespace foucault

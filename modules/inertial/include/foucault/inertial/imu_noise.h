@@ -1,0 +1,51 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "foucault/core/config.h"
+
+namespace foucault {
+
+/// Error model of an IMU, paper (31)-(32): white noise, and biases that are first-order
+/// Gauss-Markov processes about an unknown turn-on value.
+struct ImuNoise {
+  double gyro_noise_density = 0;    ///< [rad/s/sqrt(Hz)]
+  double accel_noise_density = 0;   ///< [m/s^2/sqrt(Hz)]
+  double gyro_bias_sigma = 0;       ///< steady state, 1 sigma [rad/s]
+  double accel_bias_sigma = 0;      ///< [m/s^2]
+  double bias_tau = 3600;           ///< correlation time [s]
+  double gyro_turn_on_sigma = 0;    ///< [rad/s]
+  double accel_turn_on_sigma = 0;   ///< [m/s^2]
+
+  /// Power of the driving noise, q = 2 sigma^2 / tau [(rad/s)^2/s], [(m/s^2)^2/s].
+  double gyro_bias_power() const { return 2 * gyro_bias_sigma * gyro_bias_sigma / bias_tau; }
+  double accel_bias_power() const { return 2 * accel_bias_sigma * accel_bias_sigma / bias_tau; }
+};
+
+/// How samples in a log are to be read: rates at the stamp, or increments over the interval that
+/// ends at the stamp, divided by its length.
+enum class SampleKind { instantaneous, interval_mean };
+
+/// Section `imu` of the configuration. A preset gives every value; a key that is set overrides its
+/// value. Units in the keys are those of data sheets.
+class ImuOptions : public Configurable {
+ public:
+  std::string preset = "ADIS16465";
+  std::string samples = "interval_mean";
+  std::optional<double> arw_deg_sqrt_h, vrw_m_s_sqrt_h, gyro_bias_deg_h, accel_bias_mgal,
+      bias_tau_s, gyro_turn_on_deg_h, accel_turn_on_mgal;
+
+  void fields(ConfigFields& f) override;
+
+  /// The preset with the overrides, in SI. Throws UsageError for an unknown preset.
+  ImuNoise noise() const;
+  SampleKind sample_kind() const;
+};
+
+/// Names of the presets, in the order shown to users.
+std::vector<std::string> imu_preset_names();
+/// Throws UsageError naming the known ones.
+ImuNoise imu_preset(const std::string& name);
+
+}  // namespace foucault

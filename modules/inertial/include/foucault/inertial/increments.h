@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "foucault/core/measurement.h"
+#include "foucault/inertial/imu_noise.h"
+
+namespace foucault {
+
+/// A raw IMU sample in b.
+struct ImuSample {
+  int64_t t_ns = 0;
+  Eigen::Vector3d gyro_b = Eigen::Vector3d::Zero();   ///< [rad/s]
+  Eigen::Vector3d accel_b = Eigen::Vector3d::Zero();  ///< specific force [m/s^2]
+};
+
+/// Turns samples into increments.
+/// interval_mean: rate * dt, over the interval that ends at the stamp. instantaneous: trapezoid
+/// between neighbouring samples. Where samples are missing (more than 1.5 nominal intervals) an
+/// increment covers at most one nominal interval and a hole is left; the nominal interval is the
+/// running median of the last intervals.
+class Incrementer {
+ public:
+  explicit Incrementer(SampleKind kind);
+  /// The increment that `sample` completes; none for the first sample(s).
+  /// Throws DataError if the stamp does not increase or a value is not finite.
+  std::optional<ImuIncrement> add(const ImuSample& sample);
+
+ private:
+  void learn_interval(int64_t interval_ns);
+
+  SampleKind kind_;
+  std::optional<ImuSample> last_;
+  std::vector<int64_t> recent_;
+  std::size_t next_ = 0;
+  int64_t nominal_ns_ = 0;
+};
+
+/// Splits an increment at t (t_begin < t < t_end), its rates taken as constant within.
+/// Sums of the parts equal the whole exactly.
+std::pair<ImuIncrement, ImuIncrement> split(const ImuIncrement& increment, int64_t t_ns);
+
+/// Rotation vector of the body over the increment, with the coning term of the previous one.
+/// Paper (15). The two may differ in length: the previous is scaled to this one's.
+Eigen::Vector3d rotation_with_coning(const Eigen::Vector3d& previous_dtheta,
+                                     const Eigen::Vector3d& dtheta);
+
+/// Velocity increment in the body frame at the beginning of the increment: rotation and sculling
+/// terms, paper (18).
+Eigen::Vector3d velocity_with_sculling(const Eigen::Vector3d& previous_dtheta,
+                                       const Eigen::Vector3d& previous_dvel,
+                                       const Eigen::Vector3d& dtheta, const Eigen::Vector3d& dvel);
+
+}  // namespace foucault
