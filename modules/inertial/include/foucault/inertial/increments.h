@@ -25,12 +25,14 @@ struct ImuSample {
 class Incrementer {
  public:
   explicit Incrementer(SampleKind kind);
-  /// The increment that `sample` completes; none for the first sample(s).
+  /// The increment that `sample` completes; none for the first sample, nor (in a log that begins
+  /// with a hole) until the nominal interval is known.
   /// Throws DataError if the stamp does not increase or a value is not finite.
   std::optional<ImuIncrement> add(const ImuSample& sample);
 
  private:
   void learn_interval(int64_t interval_ns);
+  bool interval_known() const;
 
   SampleKind kind_;
   std::optional<ImuSample> last_;
@@ -39,19 +41,27 @@ class Incrementer {
   int64_t nominal_ns_ = 0;
 };
 
-/// Splits an increment at t (t_begin < t < t_end), its rates taken as constant within.
-/// Sums of the parts equal the whole exactly.
+/// Splits an increment at t, its rates taken as constant within. The parts sum up to the whole.
+/// Throws std::invalid_argument unless t_begin < t < t_end.
 std::pair<ImuIncrement, ImuIncrement> split(const ImuIncrement& increment, int64_t t_ns);
 
 /// Rotation vector of the body over the increment, with the coning term of the previous one.
-/// Paper (15). The two may differ in length: the previous is scaled to this one's.
+/// Paper (15). It takes the two as equally long; see previous_increment_scale().
 Eigen::Vector3d rotation_with_coning(const Eigen::Vector3d& previous_dtheta,
                                      const Eigen::Vector3d& dtheta);
 
 /// Velocity increment in the body frame at the beginning of the increment: rotation and sculling
-/// terms, paper (18).
+/// terms, paper (18). It takes the two as equally long; see previous_increment_scale().
 Eigen::Vector3d velocity_with_sculling(const Eigen::Vector3d& previous_dtheta,
                                        const Eigen::Vector3d& previous_dvel,
                                        const Eigen::Vector3d& dtheta, const Eigen::Vector3d& dvel);
+
+/// Factor by which a previous increment of another length is to be multiplied in the two functions
+/// above. With rates linear in time over both intervals, the coning and sculling terms are
+/// T^3 / 12 times a product of level and slope, and the cross products of the increments
+/// T_p T (T_p + T) / 2 times the same; hence 2 T^2 / (T_p (T_p + T)), which is 1 for equal lengths.
+constexpr double previous_increment_scale(double previous_dt, double dt) {
+  return 2 * dt * dt / (previous_dt * (previous_dt + dt));
+}
 
 }  // namespace foucault
