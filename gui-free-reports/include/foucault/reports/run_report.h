@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "foucault/core/interfaces.h"
+#include "foucault/core/result.h"
+#include "foucault/reports/report_page.h"
+
+namespace foucault::reports {
+
+/// What a run was, in words.
+struct RunLabels {
+  std::string recording;  ///< name of the log
+  std::string method;     ///< e.g. "refined"
+  std::string version;    ///< of the program
+  std::string command;    ///< the command line; may be empty
+  std::string config;     ///< the effective configuration, YAML
+};
+
+/// Collects a run in bounded memory and writes its report: ground track, position, velocity,
+/// attitude, uncertainty, biases, errors where there is a reference, GNSS innovations, data health.
+/// Calls come in order of stamps within each kind; kinds may interleave in any way, but a
+/// reference error comes after the epoch of its stamp, whose covariance gives its bounds.
+class RunReport : public Sink {
+ public:
+  RunReport(RunLabels labels, const Mounting& mounting);
+  ~RunReport() override;
+
+  void epoch(const Epoch& epoch) override;
+  void fix(const FixResult& fix) override;
+  void notice(const Notice& notice) override;
+  void reference_error(const ReferenceError& error);
+
+  /// End of an IMU sample's interval, for the sampling statistics.
+  void imu_stamp(int64_t t_ns);
+
+  /// A stretch in which fixes were withheld on purpose; shaded in every figure over time.
+  void outage(int64_t begin_ns, int64_t end_ns);
+
+  /// Shown large at the top, in this order.
+  void key_number(const KeyNumber& number);
+
+  /// Shown under "Key numbers", in this order.
+  void table(const Table& table);
+
+  /// The page with all its figures, as plain data.
+  ReportPage page() const;
+
+  /// Writes `folder`, usually DIR/report. Throws DataError as write_report does.
+  void write(const std::string& folder) const;
+
+ private:
+  class Collector;
+  std::unique_ptr<Collector> collector_;
+};
+
+}  // namespace foucault::reports
