@@ -1,0 +1,51 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "foucault/core/measurement.h"
+
+/// Importers: other people's files -> rawlog. All of them stream, write through RawlogWriter (whole
+/// or not at all) and say in their summary what came in.
+///
+/// A row that is wrong (number of columns, not a number, NaN, sigma zero or negative, stamp not
+/// after the one before) throws DataError with file:line and a remedy, or is skipped and counted
+/// with `skip_bad_rows`. A log whose IMU and GNSS do not overlap in time throws DataError.
+/// Wrong options or mappings throw UsageError.
+namespace foucault {
+
+/// What all importers take.
+struct ImportOptions {
+  std::string out;  ///< rawlog to write
+  bool skip_bad_rows = false;
+  std::function<void(double)> progress;  ///< part done, 0 to 1; may be empty
+};
+
+/// One input stream.
+struct ImportStream {
+  std::string file;
+  int64_t written = 0;
+  int64_t skipped = 0;        ///< bad rows (skip_bad_rows)
+  std::string first_skipped;  ///< why, with file:line
+  int64_t without_fix = 0;    ///< rows in which the receiver says it has no position
+  int64_t first_ns = 0;
+  int64_t last_ns = 0;
+};
+
+struct ImportSummary {
+  ImportStream imu;
+  ImportStream gnss;
+  std::optional<ImportStream> reference;
+  int64_t wheel_speeds = 0;
+  int64_t with_velocity = 0;
+  std::map<FixQuality, int64_t> qualities;
+  Eigen::Vector3d lever_arm_v =
+      Eigen::Vector3d::Zero();  ///< IMU to antenna, forward-right-down [m]
+};
+
+}  // namespace foucault

@@ -1,0 +1,108 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "foucault/core/config.h"
+#include "foucault/core/interfaces.h"
+
+/// The YAML mapping of the importers `csv` and `rtklib`: names files, columns, units, axes and
+/// clocks of a recording.
+namespace foucault {
+
+/// How the `time` column becomes a stamp. true time = stamp + offset_s.
+class TimeMapping : public Configurable {
+ public:
+  /// gps_week_sow: columns `week` and `time`; gps_sow: seconds of the week `gps_week`;
+  /// gps: seconds since 1980-01-06; unix: seconds since 1970; seconds_of_day: of `date`, UTC;
+  /// boot: seconds after `boot_sow` in `gps_week`.
+  std::string system = "gps_week_sow";
+  std::optional<int64_t> gps_week;
+  std::string date;  ///< YYYY-MM-DD
+  std::optional<double> boot_sow;
+  double offset_s = 0;
+
+  void fields(ConfigFields& f) override;
+};
+
+/// A text file in columns.
+class TableMapping : public Configurable {
+ public:
+  std::string file;                            ///< relative to the mapping's own folder (or --data)
+  std::string separator = "comma";             ///< comma | semicolon | tab | space
+  bool header = true;                          ///< the first line names the columns
+  std::map<std::string, std::string> columns;  ///< role -> name in the header, or number from 1
+  TimeMapping time;
+
+  void fields(ConfigFields& f) override;
+};
+
+/// Roles: time, week, gyro_x, gyro_y, gyro_z, accel_x, accel_y, accel_z, wheel_speed.
+class ImuMapping : public TableMapping {
+ public:
+  std::string gyro_unit = "rad_s";  ///< rad_s | deg_s
+  std::string accel_unit = "m_s2";  ///< m_s2 | g (9.80665 m/s^2)
+  /// Which sensor axis looks forward, right, down: each x, y or z with a sign. Data stay on the
+  /// sensor's axes; this becomes the mounting.
+  std::vector<std::string> axes = {"x", "y", "z"};
+  /// Roll, pitch, heading [deg] of the sensor, on those axes, in the vehicle.
+  Eigen::Vector3d mounting_rpy_deg = Eigen::Vector3d::Zero();
+
+  void fields(ConfigFields& f) override;
+  /// Throws UsageError if `axes` is no right-handed set of three.
+  Mounting mounting() const;
+};
+
+/// Place of a local frame East-North-Up.
+class OriginMapping : public Configurable {
+ public:
+  std::optional<double> latitude_deg, longitude_deg, height_m;
+
+  void fields(ConfigFields& f) override;
+};
+
+/// Roles: time, week; latitude, longitude, height, or east, north, up [m] with `origin`;
+/// sigma_north, sigma_east, sigma_down, or sigma_horizontal, sigma_vertical; velocity_north,
+/// velocity_east, velocity_down, or speed, bearing [deg]; sigma_velocity; quality.
+class GnssMapping : public TableMapping {
+ public:
+  std::string angle_unit = "deg";            ///< of latitude, longitude: deg | rad
+  std::string height = "ellipsoidal";        ///< ellipsoidal | msl
+  std::optional<double> geoid_separation_m;  ///< ellipsoidal height = msl + this
+  OriginMapping origin;
+  std::vector<double> sigma_m;             ///< north, east, down, for files without sigma columns
+  bool velocity = true;                    ///< read the velocity columns
+  std::vector<double> velocity_sigma_m_s;  ///< north, east, down, without a sigma column
+  std::string quality = "unknown";         ///< of all fixes, without a quality column
+  std::map<std::string, std::string> quality_table;  ///< value -> fixed_rtk ... unknown, or none
+
+  void fields(ConfigFields& f) override;
+};
+
+/// Roles: time, week; latitude, longitude, height, or east, north, up with `origin`;
+/// velocity_north, velocity_east, velocity_down; roll, pitch, heading. Pose of the IMU.
+class ReferenceMapping : public TableMapping {
+ public:
+  std::string angle_unit = "deg";  ///< of all angles: deg | rad
+  std::string height = "ellipsoidal";
+  std::optional<double> geoid_separation_m;
+  OriginMapping origin;
+
+  void fields(ConfigFields& f) override;
+};
+
+/// The whole file.
+class ImportMapping : public Configurable {
+ public:
+  ImuMapping imu;
+  GnssMapping gnss;
+  ReferenceMapping reference;
+  Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Zero();  ///< IMU to antenna, forward-right-down
+
+  void fields(ConfigFields& f) override;
+};
+
+}  // namespace foucault

@@ -1,0 +1,93 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "foucault/core/config.h"
+#include "foucault/core/interfaces.h"
+#include "foucault/inertial/imu_noise.h"
+
+namespace foucault {
+
+/// Section `rawlog` of the configuration: what is taken from a log with several sensors.
+class RawlogOptions : public Configurable {
+ public:
+  std::string imu_label;                      ///< sensorLabel of the IMU; empty: the first one
+  std::string gnss_label;                     ///< of the receiver; empty: the first with a position
+  std::string reference_label = "REFERENCE";  ///< of the reference trajectory
+  double reorder_s = 2.0;                     ///< fixes may come this late [s]
+  bool gnss_velocity = true;                  ///< read velocities of the receiver
+
+  void fields(ConfigFields& f) override;
+};
+
+/// What a source has read so far.
+struct SourceCounts {
+  int64_t imu_samples = 0;
+  int64_t fixes = 0;
+  int64_t references = 0;
+  int64_t wheel_speeds = 0;
+  int64_t imu_duplicates = 0;  ///< samples equal to their predecessor, stamp included; dropped
+  int64_t late = 0;            ///< came more than reorder_s after their stamp; dropped
+  std::map<std::string, int64_t> skipped;  ///< everything else, by class (and reason)
+};
+
+/// Streams an MRPT rawlog (gzip or plain; sensory frames or observations only) as measurements.
+///
+/// Frames: b are the IMU's axes as recorded; v is forward-right-down (MRPT's forward-left-up turned
+/// half a turn about x, once, here). sensorPose of the first IMU gives the mounting q_v_b; lever
+/// arms are p_b_a = R_b_v (p_v_a - p_v_b). Heights are ellipsoidal.
+///
+/// CObservationIMU -> ImuIncrement. CObservationGPS -> GnssFix, from NovAtel BESTPOS (sigmas),
+/// TopCon PZS (covariance; also the velocity beside BESTPOS), else NMEA GGA (altitude + geoid
+/// separation; sigma from fix quality and HDOP, see nmea_sigma) with RMC or VTG. Label REFERENCE:
+/// NovAtel INSPVAS -> ReferencePose of the IMU centre (NaN attitude or velocity: absent);
+/// CObservationRobotPose -> the same, its frame being East-North-Up at the first fix.
+/// CObservationOdometry with velocities -> WheelSpeed. The rest is skipped and counted by class.
+///
+/// Order: by stamp, as core/measurement.h says. Fixes may come up to reorder_s late.
+/// Memory: constant; it grows only with what lies within reorder_s.
+///
+/// Throws DataError, one line naming the file, for: missing, a directory, empty, not a rawlog,
+/// truncated or damaged (byte offset, records read), records of a newer MRPT, no IMU, no GNSS, IMU
+/// stamps that go back or values that are not finite (record number and stamp), IMU and GNSS that
+/// do not overlap in time (when the log ends).
+class RawlogSource : public Source {
+ public:
+  explicit RawlogSource(const std::string& path, SampleKind samples = SampleKind::interval_mean,
+                        const RawlogOptions& options = {});
+  ~RawlogSource() override;
+  RawlogSource(RawlogSource&&) noexcept;
+
+  std::optional<Measurement> next() override;
+  const Mounting& mounting() const override;
+  double progress() const override;
+
+  /// IMU to antenna in b [m], of the first fix.
+  const Eigen::Vector3d& lever_arm() const;
+  const std::string& imu_label() const;
+  const std::string& gnss_label() const;
+  const SourceCounts& counts() const;
+  /// What was left out, one notice a kind, with how many and the stamp of the first.
+  std::vector<Notice> notices() const;
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Standard deviation per axis of a position without one (NMEA GGA) [m]: horizontal (north and
+/// east, each) and vertical. An assumption: a table by fix quality at HDOP 1 (fixed 0.015, float
+/// 0.25, ppp 0.1, differential 0.7, single and unknown 1.7), times HDOP (at least 0.5; 1 where the
+/// receiver gives none); vertical is twice the horizontal.
+struct NmeaSigma {
+  double horizontal = 0;
+  double vertical = 0;
+};
+NmeaSigma nmea_sigma(FixQuality quality, std::optional<double> hdop);
+
+}  // namespace foucault

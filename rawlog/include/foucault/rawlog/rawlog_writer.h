@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <variant>
+
+#include "foucault/core/interfaces.h"
+#include "foucault/core/measurement.h"
+#include "foucault/inertial/increments.h"
+
+namespace foucault {
+
+/// What a rawlog can hold of ours. Event requests are not written.
+using Record = std::variant<GnssFix, WheelSpeed, ReferencePose, ImuSample, ImuIncrement>;
+
+int64_t stamp(const Record& record);
+
+/// Writes an observation-only rawlog, gzip-compressed, in the order of the calls.
+///
+/// CObservationIMU: rates; an increment becomes its mean rates at its end, so that a reader with
+/// `samples: interval_mean` gets the increments back to double rounding (stamps have MRPT's 100 ns
+/// resolution; rates are taken over the rounded interval, and a sample at the beginning of the
+/// first increment precedes it). GnssFix: NovAtel BESTPOS (ellipsoidal height, undulation 0, sigmas
+/// as float, quality as position type), with a TopCon PZS beside it when there is a velocity or
+/// when covariances are not diagonal. ReferencePose: NovAtel INSPVAS, label REFERENCE (absent
+/// velocity or attitude as NaN). WheelSpeed: CObservationOdometry.
+///
+/// sensorPose: the IMU sits at the vehicle's origin, turned by the mounting; antennas at R_v_b
+/// p_b_a; forward-left-up as MRPT has it.
+///
+/// The file appears under its name in finish(), whole, or not at all: until then it lies beside,
+/// and the destructor removes it. Throws DataError if it cannot be written or a value is not
+/// finite.
+class RawlogWriter {
+ public:
+  explicit RawlogWriter(const std::string& path, const Mounting& mounting = {});
+  ~RawlogWriter();
+  RawlogWriter(RawlogWriter&&) noexcept;
+
+  void write(const ImuSample& sample);
+  void write(const ImuIncrement& increment);
+  void write(const GnssFix& fix);
+  void write(const ReferencePose& pose);
+  void write(const WheelSpeed& speed);
+  void write(const Record& record);
+  /// Event requests are ignored.
+  void write(const Measurement& measurement);
+
+  void finish();
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace foucault
