@@ -1,0 +1,96 @@
+#include "foucault/core/time.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <random>
+
+namespace foucault {
+namespace {
+
+constexpr int64_t kSecond = kNanosecondsPerSecond;
+
+// 2016-12-31T23:59:59 UTC; a leap second followed.
+constexpr int64_t kBeforeLeap = 1483228799 * kSecond;
+
+TEST(Time, GpsEpochIsThe6thOfJanuary1980) {
+  EXPECT_EQ(gps_to_unix_ns(0, 0.0), 315964800 * kSecond);
+  EXPECT_EQ(unix_to_gps(315964800 * kSecond).week, 0);
+  EXPECT_EQ(unix_to_gps(315964800 * kSecond).tow_ns, 0);
+}
+
+TEST(Time, Week2200) {
+  // 2022-03-06T00:00:00 GPS is the start of week 2200; 357000 s later it is Thursday
+  // 2022-03-10T03:10:00 GPS, 18 s earlier in UTC.
+  EXPECT_EQ(gps_to_unix_ns(2200, 357000.0), 1646881782 * kSecond);
+  EXPECT_EQ(gps_to_unix_ns(2200, 357000.125), 1646881782 * kSecond + 125'000'000);
+}
+
+TEST(Time, SecondOfWeekIsExactToTheNanosecond) {
+  EXPECT_EQ(gps_to_unix_ns(2200, 604799.999999999), gps_to_unix_ns(2201, 0.0) - 1);
+  EXPECT_EQ(gps_to_unix_ns(2200, 357000.123456789), 1646881782 * kSecond + 123'456'789);
+}
+
+TEST(Time, SecondOfWeekMayLieOutsideTheWeek) {
+  EXPECT_EQ(gps_to_unix_ns(2200, -0.5), gps_to_unix_ns(2199, 604799.5));
+  EXPECT_EQ(gps_to_unix_ns(2200, 604800.25), gps_to_unix_ns(2201, 0.25));
+  EXPECT_EQ(gps_to_unix_ns(GpsTime{2200, -kSecond}), gps_to_unix_ns(2199, 604799.0));
+}
+
+TEST(Time, OffsetByDate) {
+  EXPECT_EQ(gps_utc_offset_s(0), 0);
+  EXPECT_EQ(gps_utc_offset_s(362793599 * kSecond), 0);   // 1981-06-30T23:59:59
+  EXPECT_EQ(gps_utc_offset_s(362793600 * kSecond), 1);   // 1981-07-01
+  EXPECT_EQ(gps_utc_offset_s(915148799 * kSecond), 12);  // 1998-12-31T23:59:59
+  EXPECT_EQ(gps_utc_offset_s(915148800 * kSecond), 13);
+  EXPECT_EQ(gps_utc_offset_s(1435708799 * kSecond), 16);  // 2015-06-30T23:59:59
+  EXPECT_EQ(gps_utc_offset_s(1435708800 * kSecond), 17);
+  EXPECT_EQ(gps_utc_offset_s(kBeforeLeap), 17);
+  EXPECT_EQ(gps_utc_offset_s(kBeforeLeap + kSecond), 18);
+  EXPECT_EQ(gps_utc_offset_s(std::numeric_limits<int64_t>::max()), 18);
+}
+
+TEST(Time, AcrossTheLeapSecondOf2016) {
+  const GpsTime before = unix_to_gps(kBeforeLeap);
+  const GpsTime after = unix_to_gps(kBeforeLeap + kSecond);
+  EXPECT_EQ(after.week, before.week);
+  EXPECT_EQ(after.tow_ns - before.tow_ns, 2 * kSecond);  // 23:59:60 lies between
+
+  const GpsTime last{before.week, before.tow_ns + kSecond - 1};
+  const GpsTime inserted{before.week, before.tow_ns + kSecond + kSecond / 2};
+  EXPECT_EQ(gps_to_unix_ns(last), kBeforeLeap + kSecond - 1);
+  EXPECT_EQ(gps_to_unix_ns(after), kBeforeLeap + kSecond);
+  // The UNIX scale has no name for the inserted second and counts it twice.
+  EXPECT_EQ(gps_to_unix_ns(inserted), kBeforeLeap + kSecond + kSecond / 2);
+}
+
+TEST(Time, RoundTripIsExact) {
+  std::mt19937_64 rng{42};
+  std::uniform_int_distribution<int64_t> any(0, 4'000'000'000 * kSecond);
+  for (int i = 0; i < 100'000; ++i) {
+    const int64_t t_ns = any(rng);
+    const GpsTime gps = unix_to_gps(t_ns);
+    ASSERT_GE(gps.tow_ns, 0);
+    ASSERT_LT(gps.tow_ns, 604800 * kSecond);
+    ASSERT_EQ(gps_to_unix_ns(gps), t_ns);
+  }
+}
+
+TEST(Time, NanosecondsRoundToNearest) {
+  EXPECT_EQ(nanoseconds(0.1), 100'000'000);
+  EXPECT_EQ(nanoseconds(-0.1), -100'000'000);
+  EXPECT_EQ(nanoseconds(-1e-9), -1);
+  EXPECT_EQ(nanoseconds(4e-10), 0);
+  EXPECT_EQ(nanoseconds(6e-10), 1);
+  EXPECT_EQ(nanoseconds(1646881782.5), 1646881782'500'000'000);
+  EXPECT_EQ(seconds_between(5, 1'500'000'005), 1.5);
+}
+
+TEST(Time, NanosecondsRefuseWhatDoesNotFit) {
+  EXPECT_THROW(nanoseconds(std::numeric_limits<double>::quiet_NaN()), std::invalid_argument);
+  EXPECT_THROW(nanoseconds(std::numeric_limits<double>::infinity()), std::invalid_argument);
+  EXPECT_THROW(nanoseconds(1e10), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace foucault
