@@ -1,0 +1,95 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <optional>
+
+#include "foucault/core/measurement.h"
+#include "foucault/core/state.h"
+#include "foucault/inertial/imu_noise.h"
+
+namespace foucault {
+
+/// What an IMU measured between two stamps, free of the state: paper III.C-III.E.
+///
+/// Frame: everything is resolved in b_i(k-1), the body frame at t_begin held fixed in inertial
+/// space. The paper's (25) and (28) resolve in b_e(k-1), held fixed to the Earth, and so need the
+/// attitude at t_{k-1} while integrating. Both are the same motion: with a(s) the specific force
+/// in b_i, integration by parts gives
+///     integral of Exp(-w s) a ds = dv - w x (T dv - dp) + O(w^2 T^2 dv),
+///     double integral            = dp - w x (T dp - 2 idp) + O(w^2 T^2 dp),
+/// w the Earth rate in b(t_{k-1}). So the Earth's rotation is applied in the residual (motion.h),
+/// at whatever attitude the estimate has then, and never goes stale. (w T)^2 is 5e-9 at 1 s.
+///
+/// Errors are true minus measured: p = dp + e_p, v = dv + e_v, q = dq * exp(e_theta).
+struct Preintegration {
+  int64_t t_begin_ns = 0;
+  int64_t t_end_ns = 0;
+  double dt = 0;                                           ///< T [s]
+  Eigen::Quaterniond dq = Eigen::Quaterniond::Identity();  ///< b(t_end) to b_i; (21) with (15)
+  Eigen::Vector3d dv = Eigen::Vector3d::Zero();            ///< integral of a [m/s]; (18)
+  Eigen::Vector3d dp = Eigen::Vector3d::Zero();            ///< integral of dv [m]; (20)
+  Eigen::Vector3d idp = Eigen::Vector3d::Zero();           ///< integral of dp [m s]; for (29)
+  ImuBias bias;                                            ///< at which it was integrated; (37)
+
+  /// Jacobians by the biases, (44): dp(bias + d) = dp + J_dp_bg d_g + J_dp_ba d_a, and so on;
+  /// dq(bias + d) = dq * exp(J_dq_bg d_g).
+  Eigen::Matrix3d J_dp_bg = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d J_dp_ba = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d J_dv_bg = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d J_dv_ba = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d J_dq_bg = Eigen::Matrix3d::Zero();
+
+  /// Covariance of the errors, (43); order of error_state, bias rows: change over the interval.
+  Matrix15d covariance = Matrix15d::Zero();
+};
+
+/// Accumulates increments into a Preintegration, one at a time.
+///
+/// The attitude error is kept in b_i, eps = C e_theta, in which (35) becomes
+///     eps' = -C (bg + n_g),   v' = -[a x] eps - C (ba + n_a),   p' = v:
+/// only the skew of the velocity increment and C itself remain of the 15x15 products.
+/// Noise is (42), the paper's trapezoid; biases decay as Gauss-Markov in the covariance.
+class Preintegrator {
+ public:
+  /// `previous`: the increment before the first, for coning and sculling.
+  Preintegrator(const ImuNoise& noise, const ImuBias& bias, int64_t t_begin_ns,
+                const std::optional<ImuIncrement>& previous = std::nullopt);
+
+  /// Precondition: begins where the last one ended.
+  /// Throws std::invalid_argument if it does not, or if it is empty.
+  void add(const ImuIncrement& increment);
+
+  /// The measurement up to the last increment.
+  Preintegration result() const;
+
+  double dt() const { return m_.dt; }
+  int64_t t_end_ns() const { return m_.t_end_ns; }
+  const ImuBias& bias() const { return m_.bias; }
+  const std::optional<ImuIncrement>& previous() const { return previous_; }
+
+ private:
+  void propagate_errors(const ImuIncrement& increment, const Eigen::Matrix3d& C,
+                        const Eigen::Matrix3d& C_next, const Eigen::Vector3d& y);
+  void propagate_jacobians(const Eigen::Matrix3d& C, const Eigen::Matrix3d& D,
+                           const Eigen::Vector3d& y, double dt);
+  void propagate_covariance(const ImuIncrement& increment, const Eigen::Matrix3d& C,
+                            const Eigen::Matrix3d& D, const Eigen::Vector3d& y, double dt);
+
+  /// Blocks of the covariance that are not zero; e = eps, g = gyro bias, a = accel bias.
+  struct Blocks {
+    Eigen::Matrix3d pp, pv, pe, pg, pa, vv, ve, vg, va, ee, eg;
+    double gg = 0, aa = 0;  ///< times identity
+    Blocks();
+  };
+
+  ImuNoise noise_;
+  std::optional<ImuIncrement> previous_;
+  Preintegration m_;  ///< its J_dq_bg holds d eps / d bg until result()
+  Eigen::Matrix3d C_ = Eigen::Matrix3d::Identity();
+  Blocks cov_;
+  double bias_decay_dt_ = -1;  ///< dt for which bias_decay_ was computed
+  double bias_decay_ = 1;
+};
+
+}  // namespace foucault
