@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <limits>
 #include <map>
 #include <optional>
@@ -18,7 +19,8 @@ struct Range {
   double min = -std::numeric_limits<double>::infinity();
   double max = std::numeric_limits<double>::infinity();
 };
-constexpr Range kPositive{std::numeric_limits<double>::min(), std::numeric_limits<double>::infinity()};
+constexpr Range kPositive{std::numeric_limits<double>::min(),
+                          std::numeric_limits<double>::infinity()};
 constexpr Range kNotNegative{0, std::numeric_limits<double>::infinity()};
 
 class ConfigFields;
@@ -30,11 +32,12 @@ class Configurable {
   virtual void fields(ConfigFields& f) = 0;
 };
 
-/// Visits the fields of a Configurable. Keys are snake_case.
+/// Visits the fields of a Configurable. Keys are snake_case; numbers are finite.
 class ConfigFields {
  public:
   virtual ~ConfigFields() = default;
   virtual void number(std::string_view key, double& value, Range range, std::string_view help) = 0;
+  /// `null` clears it.
   virtual void optional_number(std::string_view key, std::optional<double>& value, Range range,
                                std::string_view help) = 0;
   virtual void integer(std::string_view key, int64_t& value, Range range,
@@ -55,20 +58,21 @@ class ConfigFields {
 };
 
 /// Reads a YAML file into `target`; keys that are absent keep their value.
-/// Throws DataError if the file cannot be read, UsageError for what is wrong in it, with file, line,
-/// key and, for an unknown key, the nearest valid one.
+/// Throws DataError if the file cannot be read, UsageError for what is wrong in it, with file,
+/// line, key and, for an unknown key, the nearest valid one.
 void load_config(const std::string& path, Configurable& target);
 
 /// The same from text; `origin` stands for the file name in messages.
 void load_config_text(const std::string& yaml, const std::string& origin, Configurable& target);
 
-/// Applies `a.b=value`. Throws UsageError as load_config does.
+/// Applies `a.b=value`. Lists, maps and quoted texts are read as YAML, all else as it stands; a map
+/// is added to, name by name. Throws UsageError as load_config does.
 void set_config(const std::string& assignment, Configurable& target);
 
 /// The effective configuration as YAML; load_config_text of it gives the same values.
 std::string dump_config(Configurable& target);
 
-/// One line a key: name, default and help, for --help.
+/// One line a key: dotted name, default, help with range or choices, in columns; for --help.
 std::string describe_config(Configurable& target);
 
 }  // namespace foucault
