@@ -1,0 +1,42 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <random>
+
+namespace foucault {
+
+/// What a stream of random numbers is for. Each has a generator of its own, so that switching one
+/// error on or off leaves the draws of the others as they are.
+enum class RandomStream : uint32_t {
+  motion = 1,
+  surface,
+  heading,
+  gyro_white,
+  accel_white,
+  gyro_turn_on,
+  accel_turn_on,
+  gyro_bias,
+  accel_bias,
+  scale_factor,
+  gnss_position,
+  gnss_velocity
+};
+
+/// Reproducible draws: the same seed and stream give the same numbers.
+class Draws {
+ public:
+  Draws(int64_t seed, RandomStream stream);
+
+  double normal() { return normal_(engine_); }  ///< mean 0, sigma 1
+  Eigen::Vector3d normal3();                    ///< three of them
+  double uniform(double low, double high);      ///< in [low, high)
+  bool happens(double probability) { return uniform(0, 1) < probability; }
+  double sign() { return happens(0.5) ? 1.0 : -1.0; }
+
+ private:
+  std::mt19937_64 engine_;
+  std::normal_distribution<double> normal_;
+};
+
+}  // namespace foucault

@@ -1,0 +1,161 @@
+#include "foucault/simulation/scenario.h"
+
+#include <array>
+#include <cmath>
+#include <functional>
+#include <memory>
+
+#include "airliner.h"
+#include "foucault/core/error.h"
+#include "foucault/core/so3.h"
+#include "foucault/core/time.h"
+#include "foucault/geodesy/local_frame.h"
+#include "foucault/simulation/random.h"
+#include "road_vehicle.h"
+#include "rollout.h"
+
+namespace foucault {
+namespace {
+
+using simulation::Rollout;
+using simulation::RolloutPose;
+
+constexpr double kPi = 3.14159265358979323846;
+constexpr double kDeg = kPi / 180;
+constexpr double kRolloutStep = 0.01;  ///< [s]
+
+/// Stands where it is, a little tilted.
+class Standing : public Rollout {
+ public:
+  explicit Standing(const ScenarioOptions& options) {
+    pose_.position = options.start_position();
+    pose_.euler = {1.0 * kDeg, -0.5 * kDeg, simulation::start_heading(options)};
+  }
+  RolloutPose pose() const override { return pose_; }
+  void advance(double) override {}
+
+ private:
+  RolloutPose pose_;
+};
+
+/// A kind of motion: its name, the knots of its splines, and what to step through time.
+struct Scenario {
+  const char* name;
+  double knot_interval;  ///< [s]
+  std::function<std::unique_ptr<Rollout>(const ScenarioOptions&)> rollout;
+};
+
+const std::array<Scenario, 4>& scenarios() {
+  using namespace simulation;
+  static const std::array<Scenario, 4> kScenarios{
+      {{"city", 0.5,
+        [](const ScenarioOptions& o) { return std::make_unique<RoadVehicle>(city_style(), o); }},
+       {"motorway", 0.5,
+        [](const ScenarioOptions& o) {
+          return std::make_unique<RoadVehicle>(motorway_style(), o);
+        }},
+       {"airliner", 1.0, [](const ScenarioOptions& o) { return std::make_unique<Airliner>(o); }},
+       {"static", 10.0, [](const ScenarioOptions& o) { return std::make_unique<Standing>(o); }}}};
+  return kScenarios;
+}
+
+const Scenario& find_scenario(const std::string& name) {
+  std::string known;
+  for (const Scenario& scenario : scenarios()) {
+    if (name == scenario.name) return scenario;
+    known += std::string(known.empty() ? "" : ", ") + scenario.name;
+  }
+  throw UsageError("scenario '" + name + "' is unknown; choose one of " + known);
+}
+
+Vibration vibration_of(const ScenarioOptions& options) {
+  const double w = 2 * kPi * options.vibration_hz;
+  return {options.vibration_hz, options.vibration_m_s2 / (w * w), options.vibration_deg * kDeg};
+}
+
+/// The poses of a roll-out at the knots: at rest before the start, then every knot interval.
+Trajectory follow(Rollout& rollout, const ScenarioOptions& options, double knot_interval) {
+  const std::size_t count = QuinticSpline::controls_for(options.duration_s, knot_interval);
+  const int steps = static_cast<int>(std::lround(knot_interval / kRolloutStep));
+  const LocalFrame frame(options.start_position());
+  std::vector<Eigen::Vector3d> positions, angles;
+  positions.reserve(count);
+  angles.reserve(count);
+  for (std::size_t k = 0; k < count; ++k) {
+    const bool started = k > QuinticSpline::kControlsBefore;
+    for (int i = 0; started && i < steps; ++i) rollout.advance(kRolloutStep);
+    const RolloutPose pose = rollout.pose();
+    positions.push_back(frame.to_local(pose.position));
+    angles.push_back(pose.euler);
+  }
+  return Trajectory(options.start_position(), QuinticSpline(knot_interval, std::move(positions)),
+                    QuinticSpline(knot_interval, std::move(angles)), vibration_of(options));
+}
+
+}  // namespace
+
+void ScenarioOptions::fields(ConfigFields& f) {
+  f.text("name", name, scenario_names(), "kind of trip");
+  f.number("duration_s", duration_s, {1, 1e6}, "length of the recording");
+  f.integer("seed", seed, {}, "the same seed gives the same recording");
+  f.number("latitude_deg", latitude_deg, {-89, 89}, "where the trip starts");
+  f.number("longitude_deg", longitude_deg, {-180, 180}, "where the trip starts");
+  f.number("height_m", height_m, {-1000, 20000}, "start height above the ellipsoid");
+  f.optional_number("heading_deg", heading_deg, {-360, 360}, "at the start; none: by the seed");
+  f.number("rest_s", rest_s, kNotNegative, "standing still before the trip");
+  f.integer("gps_week", gps_week, {0, 10000}, "start, GPS week");
+  f.number("gps_sow_s", gps_sow_s, {0, 604800}, "start, second of the GPS week");
+  f.number("imu_rate_hz", imu_rate_hz, {10, 10000}, "samples per second");
+  f.vector3("mounting_deg", mounting_deg, "roll, pitch, heading of the IMU in the vehicle");
+  f.number("scale_factor_sigma_ppm", scale_factor_sigma_ppm, kNotNegative,
+           "of each gyroscope and accelerometer axis");
+  f.number("vibration_hz", vibration_hz, {1, 1000}, "frequency of the vibration");
+  f.number("vibration_m_s2", vibration_m_s2, kNotNegative, "acceleration amplitude, 0: none");
+  f.number("vibration_deg", vibration_deg, kNotNegative, "angle amplitude, 0: none");
+  f.numbers("imu_gap_start_s", imu_gap_start_s, kNotNegative, "IMU gaps, seconds after start");
+  f.number("imu_gap_length_s", imu_gap_length_s, kNotNegative, "length of each IMU gap");
+  f.number("gnss_rate_hz", gnss_rate_hz, {0.001, 1000}, "fixes per second");
+  f.number("gnss_phase_s", gnss_phase_s, kNotNegative, "first fix, seconds after start");
+  f.vector3("gnss_sigma_m", gnss_sigma_m, "position noise north, east, down");
+  f.number("gnss_velocity_sigma_m_s", gnss_velocity_sigma_m_s, kNotNegative,
+           "velocity noise; 0: fixes without velocity");
+  f.flag("gnss_noise", gnss_noise, "false: exact fixes that report the sigmas all the same");
+  f.number("gnss_degraded_start_s", gnss_degraded_start_s, kNotNegative,
+           "poor GNSS, seconds after start");
+  f.number("gnss_degraded_length_s", gnss_degraded_length_s, kNotNegative, "0: never poor");
+  f.number("gnss_degraded_factor", gnss_degraded_factor, kPositive, "poor GNSS: sigmas times this");
+  f.vector3("lever_arm_m", lever_arm_m, "IMU to antenna, forward, right, down");
+  f.number("reference_rate_hz", reference_rate_hz, {0, 1000}, "true poses per second; 0: none");
+}
+
+Geodetic ScenarioOptions::start_position() const {
+  return {latitude_deg * kDeg, longitude_deg * kDeg, height_m};
+}
+
+int64_t ScenarioOptions::start_ns() const {
+  return gps_to_unix_ns(static_cast<int>(gps_week), gps_sow_s);
+}
+
+Eigen::Quaterniond ScenarioOptions::q_v_b() const {
+  const Eigen::Vector3d angles = mounting_deg * kDeg;
+  return so3::from_euler({angles.x(), angles.y(), angles.z()});
+}
+
+std::vector<std::string> scenario_names() {
+  std::vector<std::string> names;
+  for (const Scenario& scenario : scenarios()) names.emplace_back(scenario.name);
+  return names;
+}
+
+Trajectory make_trajectory(const ScenarioOptions& options) {
+  const Scenario& scenario = find_scenario(options.name);
+  const std::unique_ptr<Rollout> rollout = scenario.rollout(options);
+  return follow(*rollout, options, scenario.knot_interval);
+}
+
+double simulation::start_heading(const ScenarioOptions& options) {
+  if (options.heading_deg) return *options.heading_deg * kDeg;
+  return Draws(options.seed, RandomStream::heading).uniform(-kPi, kPi);
+}
+
+}  // namespace foucault
