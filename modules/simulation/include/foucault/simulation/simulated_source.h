@@ -1,0 +1,74 @@
+#pragma once
+
+#include <optional>
+
+#include "foucault/core/interfaces.h"
+#include "foucault/core/result.h"
+#include "foucault/inertial/imu_noise.h"
+#include "foucault/simulation/gnss_simulator.h"
+#include "foucault/simulation/imu_simulator.h"
+#include "foucault/simulation/scenario.h"
+
+namespace foucault {
+
+/// Stamps at a fixed rate, rounded to 100 ns (the resolution of MRPT's clock) without drift.
+class StampSequence {
+ public:
+  /// rate_hz 0: no stamps. phase_s: of the first one after start.
+  StampSequence(int64_t start_ns, double rate_hz, double phase_s);
+  int64_t at(int64_t index) const;
+  bool empty() const { return rate_hz_ == 0; }
+
+ private:
+  int64_t start_ns_;
+  double rate_hz_;
+  double phase_s_;
+};
+
+/// A simulated recording as a Source: GnssFix, ReferencePose (the truth) and ImuIncrement in the
+/// order of Measurement, from the start to duration_s after it. Stamps are multiples of 100 ns, so
+/// that a rawlog keeps them exactly.
+/// Memory: the control points of the trajectory, about 100 bytes a second, and no more.
+class SimulatedSource : public Source {
+ public:
+  /// Throws UsageError for options that make no sense together.
+  SimulatedSource(const ScenarioOptions& options, const ImuNoise& noise);
+
+  std::optional<Measurement> next() override;
+  const Mounting& mounting() const override { return mounting_; }
+  double progress() const override;
+
+  const Trajectory& trajectory() const { return trajectory_; }
+
+  /// The true state at a stamp within the recording, for consistency tests: position, velocity,
+  /// q_n_b, and the bias at the end of the last increment given out. Covariance zero.
+  Epoch truth(int64_t t_ns) const;
+
+  /// True biases at the end of the last increment given out.
+  ImuBias true_bias() const { return errors_.bias(); }
+
+ private:
+  struct Stream {
+    StampSequence stamps;
+    int64_t index = 0;
+    std::optional<int64_t> next_ns(int64_t end_ns) const;
+  };
+
+  Motion motion_at(int64_t t_ns) const;
+  GnssFix next_fix();
+  ReferencePose next_reference();
+  /// None inside a gap, or when the recording is over.
+  std::optional<ImuIncrement> next_increment();
+  bool in_gap(const ImuIncrement& increment) const;
+
+  ScenarioOptions options_;
+  int64_t start_ns_, end_ns_;
+  Mounting mounting_;
+  Trajectory trajectory_;
+  GnssSimulator gnss_;
+  ImuErrors errors_;
+  Stream fixes_, references_, increments_;
+  int64_t now_ns_;
+};
+
+}  // namespace foucault

@@ -1,0 +1,57 @@
+#include "foucault/simulation/gnss_simulator.h"
+
+#include "foucault/geodesy/wgs84.h"
+
+namespace foucault {
+namespace {
+
+/// Velocity of the antenna relative to the Earth, in the NED of the IMU [m/s].
+Eigen::Vector3d antenna_velocity_n(const Motion& motion, const Eigen::Vector3d& p_v_a) {
+  const Eigen::Vector3d omega_ie_v =
+      motion.q_n_v.conjugate() * wgs84::earth_rate_n(motion.position.latitude);
+  const Eigen::Vector3d omega_ev_v = motion.omega_iv_v - omega_ie_v;
+  return motion.velocity_n + motion.q_n_v * omega_ev_v.cross(p_v_a);
+}
+
+Eigen::Vector3d antenna_position_e(const Motion& motion, const Eigen::Vector3d& p_v_a) {
+  const Eigen::Matrix3d R_e_n = wgs84::R_e_n(motion.position.latitude, motion.position.longitude);
+  return motion.p_e + R_e_n * (motion.q_n_v * p_v_a);
+}
+
+}  // namespace
+
+GnssSimulator::GnssSimulator(const ScenarioOptions& options)
+    : options_(options),
+      p_b_a_(options.q_v_b().conjugate() * options.lever_arm_m),
+      position_draws_(options.seed, RandomStream::gnss_position),
+      velocity_draws_(options.seed, RandomStream::gnss_velocity) {}
+
+bool GnssSimulator::degraded(double t) const {
+  const double since = t - options_.gnss_degraded_start_s;
+  return since >= 0 && since < options_.gnss_degraded_length_s;
+}
+
+GnssFix GnssSimulator::measure(const Motion& motion, int64_t t_ns, double t) {
+  const double factor = degraded(t) ? options_.gnss_degraded_factor : 1.0;
+  const double noise = options_.gnss_noise ? 1.0 : 0.0;
+  const Eigen::Vector3d sigma = factor * options_.gnss_sigma_m;
+  const double velocity_sigma = factor * options_.gnss_velocity_sigma_m_s;
+  const Eigen::Vector3d position_noise_n = noise * sigma.cwiseProduct(position_draws_.normal3());
+  const Eigen::Vector3d velocity_noise_n = noise * velocity_sigma * velocity_draws_.normal3();
+  const Eigen::Matrix3d R_e_n = wgs84::R_e_n(motion.position.latitude, motion.position.longitude);
+
+  GnssFix fix;
+  fix.t_ns = t_ns;
+  fix.antenna = wgs84::ecef_to_geodetic(antenna_position_e(motion, options_.lever_arm_m) +
+                                        R_e_n * position_noise_n);
+  fix.position_covariance = sigma.cwiseAbs2().asDiagonal();
+  fix.quality = degraded(t) ? FixQuality::float_rtk : FixQuality::fixed_rtk;
+  fix.p_b_a = p_b_a_;
+  if (velocity_sigma > 0) {
+    fix.velocity_n = antenna_velocity_n(motion, options_.lever_arm_m) + velocity_noise_n;
+    fix.velocity_covariance = velocity_sigma * velocity_sigma * Eigen::Matrix3d::Identity();
+  }
+  return fix;
+}
+
+}  // namespace foucault
