@@ -8,9 +8,10 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <numeric>
-#include <sstream>
 #include <system_error>
 
 #include "foucault/core/error.h"
@@ -409,14 +410,16 @@ YAML::Node nested(const std::string& dotted, const YAML::Node& value) {
 }  // namespace
 
 void load_config(const std::string& path, Configurable& target) {
+  if (std::filesystem::is_directory(path)) {
+    throw DataError(fmt::format("{}: is a directory, not a configuration file", path));
+  }
   std::ifstream file(path, std::ios::binary);
-  std::ostringstream yaml;
-  if (file.is_open()) yaml << file.rdbuf();
-  if (!file.is_open() || yaml.bad()) {  // bad: a directory, or reading broke off
+  if (!file) {
     throw DataError(
         fmt::format("{}: cannot read the configuration: {}", path, std::strerror(errno)));
   }
-  load_config_text(yaml.str(), path, target);
+  const std::string yaml{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  load_config_text(yaml, path, target);
 }
 
 void load_config_text(const std::string& yaml, const std::string& origin, Configurable& target) {
