@@ -1,0 +1,92 @@
+#include "foucault/geodesy/wgs84.h"
+
+#include <mrpt/topography/conversions.h>
+
+#include <cmath>
+
+#include "foucault/core/so3.h"
+
+namespace foucault::wgs84 {
+namespace {
+
+constexpr double kSemiMinorAxis = kSemiMajorAxis * (1 - kFlattening);
+constexpr double kEccentricity2 = kFlattening * (2 - kFlattening);
+constexpr double kSecondEccentricity2 = kEccentricity2 / (1 - kEccentricity2);
+
+constexpr double kEquatorGravity = 9.7803253359;    // gamma_e [m/s^2]
+constexpr double kSomigliana = 0.00193185265241;    // k
+constexpr double kGravityRatio = 0.00344978650684;  // m = omega^2 a^2 b / GM
+
+constexpr double kDegreesPerRadian = 57.29577951308232;
+
+/// Given to MRPT because its geodeticToGeocentric_WGS84 rounds the minor axis (52 um at the poles).
+/// Its geocentricToGeodetic is not used: 85 um wrong in latitude and lost at the south pole.
+mrpt::topography::TEllipsoid ellipsoid() { return {kSemiMajorAxis, kSemiMinorAxis, "WGS84"}; }
+
+}  // namespace
+
+double meridian_radius(double latitude) {
+  const double s = std::sin(latitude);
+  const double w2 = 1 - kEccentricity2 * s * s;
+  return kSemiMajorAxis * (1 - kEccentricity2) / (w2 * std::sqrt(w2));
+}
+
+double transverse_radius(double latitude) {
+  const double s = std::sin(latitude);
+  return kSemiMajorAxis / std::sqrt(1 - kEccentricity2 * s * s);
+}
+
+Eigen::Vector3d geodetic_to_ecef(const Geodetic& position) {
+  const mrpt::topography::TGeodeticCoords geodetic(position.latitude * kDegreesPerRadian,
+                                                   position.longitude * kDegreesPerRadian,
+                                                   position.height);
+  mrpt::topography::TGeocentricCoords p;
+  mrpt::topography::geodeticToGeocentric(geodetic, p, ellipsoid());
+  return {p.x, p.y, p.z};
+}
+
+Geodetic ecef_to_geodetic(const Eigen::Vector3d& p_e) {
+  const double p = std::hypot(p_e.x(), p_e.y());
+  // Bowring's iteration on the reduced latitude (beta); each step gains a factor of about
+  // e^4 h / a, so two are exact to rounding within 100 km and the third serves higher places.
+  double beta = std::atan2(p_e.z() * kSemiMajorAxis, p * kSemiMinorAxis);
+  double latitude = 0;
+  for (int i = 0; i < 3; ++i) {
+    const double s = std::sin(beta);
+    const double c = std::cos(beta);
+    latitude = std::atan2(p_e.z() + kSecondEccentricity2 * kSemiMinorAxis * s * s * s,
+                          p - kEccentricity2 * kSemiMajorAxis * c * c * c);
+    beta = std::atan2((1 - kFlattening) * std::sin(latitude), std::cos(latitude));
+  }
+  const double s = std::sin(latitude);
+  const double height =
+      p * std::cos(latitude) + p_e.z() * s - kSemiMajorAxis * std::sqrt(1 - kEccentricity2 * s * s);
+  return {latitude, so3::wrap(std::atan2(p_e.y(), p_e.x())), height};
+}
+
+Eigen::Matrix3d R_e_n(double latitude, double longitude) {
+  const double s_lat = std::sin(latitude);
+  const double c_lat = std::cos(latitude);
+  const double s_lon = std::sin(longitude);
+  const double c_lon = std::cos(longitude);
+  Eigen::Matrix3d R;
+  R << -s_lat * c_lon, -s_lon, -c_lat * c_lon,  //
+      -s_lat * s_lon, c_lon, -c_lat * s_lon,    //
+      c_lat, 0, -s_lat;
+  return R;
+}
+
+double normal_gravity(double latitude, double height) {
+  const double s2 = std::sin(latitude) * std::sin(latitude);
+  const double on_ellipsoid =
+      kEquatorGravity * (1 + kSomigliana * s2) / std::sqrt(1 - kEccentricity2 * s2);
+  const double h = height / kSemiMajorAxis;
+  return on_ellipsoid *
+         (1 - 2 * (1 + kFlattening + kGravityRatio - 2 * kFlattening * s2) * h + 3 * h * h);
+}
+
+Eigen::Vector3d earth_rate_n(double latitude) {
+  return {kEarthRate * std::cos(latitude), 0, -kEarthRate * std::sin(latitude)};
+}
+
+}  // namespace foucault::wgs84
