@@ -1,0 +1,94 @@
+#include "foucault/inertial/strapdown.h"
+
+#include <cmath>
+
+#include "foucault/core/so3.h"
+#include "foucault/geodesy/wgs84.h"
+#include "foucault/inertial/increments.h"
+
+namespace foucault {
+namespace {
+
+/// Motion sensed by the IMU over an increment, relative to inertial space.
+struct SensedMotion {
+  Eigen::Vector3d rotation_b;  ///< rotation vector of the body [rad]
+  Eigen::Vector3d velocity_b;  ///< by specific force, in b at the beginning [m/s]
+};
+
+SensedMotion sensed_motion(const ImuIncrement& previous, const ImuIncrement& increment) {
+  const double scale =
+      previous.dt() > 0 ? previous_increment_scale(previous.dt(), increment.dt()) : 0.0;
+  const Eigen::Vector3d previous_dtheta = scale * previous.dtheta_b;
+  const Eigen::Vector3d previous_dvel = scale * previous.dvel_b;
+  const Eigen::Vector3d& dtheta = increment.dtheta_b;
+  const Eigen::Vector3d& dvel = increment.dvel_b;
+  // The last term is the next one of the rotation series. In a long turn at 30 deg/s and 200 Hz it
+  // is 4 um/s^2, 1 cm in 60 s.
+  return {rotation_with_coning(previous_dtheta, dtheta),
+          velocity_with_sculling(previous_dtheta, previous_dvel, dtheta, dvel) +
+              dtheta.cross(dtheta.cross(dvel)) / 6};
+}
+
+}  // namespace
+
+Place::Place(const Geodetic& position)
+    : radius_north(wgs84::meridian_radius(position.latitude) + position.height),
+      radius_east(wgs84::transverse_radius(position.latitude) + position.height),
+      cos_latitude(std::cos(position.latitude)),
+      tan_latitude(std::tan(position.latitude)),
+      gravity(wgs84::normal_gravity(position.latitude, position.height)),
+      omega_ie_n(wgs84::earth_rate_n(position.latitude)) {}
+
+Eigen::Vector3d Place::omega_en_n(const Eigen::Vector3d& v_n) const {
+  const double east_rate = v_n.y() / radius_east;
+  return {east_rate, -v_n.x() / radius_north, -east_rate * tan_latitude};
+}
+
+Eigen::Vector3d Place::free_acceleration_n(const Eigen::Vector3d& v_n) const {
+  const Eigen::Vector3d coriolis_rate = 2 * omega_ie_n + omega_en_n(v_n);
+  return Eigen::Vector3d(0, 0, gravity) - coriolis_rate.cross(v_n);
+}
+
+Geodetic displaced(const Geodetic& position, const Eigen::Vector3d& d_n, const Place& place) {
+  const double d_longitude = d_n.y() / (place.radius_east * place.cos_latitude);
+  return {position.latitude + d_n.x() / place.radius_north,
+          so3::wrap(position.longitude + d_longitude), position.height - d_n.z()};
+}
+
+Eigen::Vector3d displacement_n(const Geodetic& from, const Geodetic& to, const Place& place) {
+  const double d_longitude = so3::wrap(to.longitude - from.longitude);
+  return {(to.latitude - from.latitude) * place.radius_north,
+          d_longitude * place.radius_east * place.cos_latitude, from.height - to.height};
+}
+
+ImuIncrement without_bias(const ImuIncrement& increment, const ImuBias& bias) {
+  ImuIncrement compensated = increment;
+  compensated.dtheta_b -= bias.gyro * increment.dt();
+  compensated.dvel_b -= bias.accel * increment.dt();
+  return compensated;
+}
+
+StrapdownState advance(const StrapdownState& state, const ImuIncrement& previous,
+                       const ImuIncrement& increment) {
+  const double dt = increment.dt();
+  const SensedMotion sensed = sensed_motion(previous, increment);
+  const Eigen::Vector3d sensed_velocity_n = state.q_n_b * sensed.velocity_b;
+
+  const Geodetic mid_position =
+      displaced(state.position, 0.5 * dt * state.v_n, Place(state.position));
+  const Place mid(mid_position);
+  const Eigen::Vector3d mid_v_n =
+      state.v_n + 0.5 * (sensed_velocity_n + dt * mid.free_acceleration_n(state.v_n));
+  const Eigen::Vector3d frame_rotation_n = (mid.omega_ie_n + mid.omega_en_n(mid_v_n)) * dt;
+
+  StrapdownState next;
+  next.t_ns = increment.t_end_ns;
+  next.v_n = state.v_n + sensed_velocity_n - 0.5 * frame_rotation_n.cross(sensed_velocity_n) +
+             dt * mid.free_acceleration_n(mid_v_n);
+  next.position = displaced(state.position, 0.5 * dt * (state.v_n + next.v_n), mid);
+  next.q_n_b =
+      (so3::exp(-frame_rotation_n) * state.q_n_b * so3::exp(sensed.rotation_b)).normalized();
+  return next;
+}
+
+}  // namespace foucault
