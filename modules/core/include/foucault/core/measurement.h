@@ -46,8 +46,8 @@ struct GnssFix {
 struct ReferencePose {
   int64_t t_ns = 0;
   Geodetic position;
-  std::optional<Eigen::Vector3d> velocity_n;   ///< north, east, down [m/s]
-  std::optional<Eigen::Quaterniond> q_n_v;     ///< vehicle (forward-right-down) to local NED
+  std::optional<Eigen::Vector3d> velocity_n;  ///< north, east, down [m/s]
+  std::optional<Eigen::Quaterniond> q_n_v;    ///< vehicle (forward-right-down) to local NED
 };
 
 /// Speed of the vehicle from its wheels, along v's forward axis.

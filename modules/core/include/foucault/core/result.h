@@ -12,11 +12,12 @@
 /// What estimators give out, as plain values.
 namespace foucault {
 
-/// A navigation solution of the IMU centre at one stamp, in the local North-East-Down of that place.
+/// A navigation solution of the IMU centre at one stamp, in the local North-East-Down of that
+/// place.
 struct Epoch {
   int64_t t_ns = 0;
   Geodetic position;
-  Eigen::Vector3d velocity_n = Eigen::Vector3d::Zero();               ///< [m/s]
+  Eigen::Vector3d velocity_n = Eigen::Vector3d::Zero();  ///< [m/s]
   Eigen::Quaterniond q_n_b = Eigen::Quaterniond::Identity();
   ImuBias bias;
   /// Error covariance, order of error_state: dp and dv in local NED, dtheta in b.

@@ -15,7 +15,8 @@ constexpr double seconds_between(int64_t begin_ns, int64_t end_ns) {
   return static_cast<double>(end_ns - begin_ns) * 1e-9;
 }
 
-/// Nearest stamp to `seconds`, a duration [s].
+/// Nearest stamp to `seconds`, a duration or a date [s].
+/// Throws std::invalid_argument if it is not finite or does not fit.
 int64_t nanoseconds(double seconds);
 
 /// The stamp as seconds [s]; good to about 0.2 us for today's dates.
@@ -30,7 +31,8 @@ struct GpsTime {
 /// GPS minus UTC [s] at a UTC instant (18 since 2017-01-01; 0 before 1981-07-01).
 int gps_utc_offset_s(int64_t utc_ns);
 
-/// GPS week and second of week [s] to a UNIX stamp. `sow` may lie outside one week.
+/// GPS week and second of week [s] to a UNIX stamp. `sow` may lie outside one week. In an inserted
+/// leap second the stamp is one second ahead of UTC, as that second has no name on the UNIX scale.
 int64_t gps_to_unix_ns(int week, double sow);
 int64_t gps_to_unix_ns(const GpsTime& gps);
 

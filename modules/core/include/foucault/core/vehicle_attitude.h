@@ -1,0 +1,24 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include "foucault/core/interfaces.h"
+#include "foucault/core/result.h"
+#include "foucault/core/so3.h"
+
+namespace foucault {
+
+/// Attitude of the vehicle (forward-right-down) in the local North-East-Down, from an epoch, whose
+/// attitude is the IMU's.
+struct VehicleAttitude {
+  Eigen::Quaterniond q_n_v = Eigen::Quaterniond::Identity();
+  Eigen::Matrix3d covariance_v = Eigen::Matrix3d::Zero();  ///< of the right perturbation, v [rad^2]
+  so3::Euler euler;                                        ///< [rad]
+  Eigen::Vector3d sigma = Eigen::Vector3d::Zero();  ///< of roll, pitch, heading [rad], first order
+};
+
+/// q_n_v = q_n_b * q_v_b^-1; the perturbation turns as dtheta_v = R_v_b dtheta_b.
+VehicleAttitude vehicle_attitude(const Epoch& epoch, const Mounting& mounting);
+
+}  // namespace foucault

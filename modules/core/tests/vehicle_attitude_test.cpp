@@ -1,0 +1,71 @@
+#include "foucault/core/vehicle_attitude.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <cmath>
+#include <random>
+
+namespace foucault {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+TEST(VehicleAttitude, TurnsTheMountingOut) {
+  // An IMU that looks backward, right, up (as RTK car recordings have it) in a vehicle going east.
+  Mounting mounting;
+  mounting.q_v_b = Eigen::AngleAxisd(kPi, Eigen::Vector3d::UnitY());
+  const Eigen::Quaterniond q_n_v = so3::from_euler({0.01, -0.02, kPi / 2});
+  Epoch epoch;
+  epoch.q_n_b = q_n_v * mounting.q_v_b;
+  const VehicleAttitude attitude = vehicle_attitude(epoch, mounting);
+  EXPECT_NEAR(attitude.euler.roll, 0.01, 1e-15);
+  EXPECT_NEAR(attitude.euler.pitch, -0.02, 1e-15);
+  EXPECT_NEAR(attitude.euler.heading, kPi / 2, 1e-15);
+}
+
+TEST(VehicleAttitude, SigmaFollowsTheMounting) {
+  Mounting mounting;  // b's x axis points right, its y axis backward
+  mounting.q_v_b = Eigen::AngleAxisd(kPi / 2, Eigen::Vector3d::UnitZ());
+  Epoch epoch;
+  epoch.q_n_b = mounting.q_v_b;  // level, north
+  epoch.covariance.diagonal().segment<3>(error_state::kAttitude) << 1e-4, 4e-4, 9e-4;
+  const VehicleAttitude attitude = vehicle_attitude(epoch, mounting);
+  EXPECT_NEAR(attitude.sigma[0], 0.02, 1e-15);  // roll: about b's y
+  EXPECT_NEAR(attitude.sigma[1], 0.01, 1e-15);
+  EXPECT_NEAR(attitude.sigma[2], 0.03, 1e-15);
+}
+
+TEST(VehicleAttitude, SigmaIsThatOfSampledAttitudes) {
+  std::mt19937 rng{42};
+  std::normal_distribution<double> normal;
+  Mounting mounting;
+  mounting.q_v_b = so3::exp({0.3, -1.1, 2.0});
+  Epoch epoch;
+  epoch.q_n_b = so3::from_euler({0.3, 0.9, 2.5}) * mounting.q_v_b;
+  Eigen::Matrix3d root;
+  root << 2e-3, 0, 0, 1e-3, 3e-3, 0, -1e-3, 5e-4, 1e-3;
+  epoch.covariance.block<3, 3>(error_state::kAttitude, error_state::kAttitude) =
+      root * root.transpose();
+  const VehicleAttitude mean = vehicle_attitude(epoch, mounting);
+
+  constexpr int kSamples = 20'000;
+  Eigen::Vector3d sum_of_squares = Eigen::Vector3d::Zero();
+  for (int i = 0; i < kSamples; ++i) {
+    Epoch sample = epoch;
+    sample.q_n_b =
+        epoch.q_n_b * so3::exp(root * Eigen::Vector3d(normal(rng), normal(rng), normal(rng)));
+    const so3::Euler e = vehicle_attitude(sample, mounting).euler;
+    const Eigen::Vector3d error(so3::wrap(e.roll - mean.euler.roll), e.pitch - mean.euler.pitch,
+                                so3::wrap(e.heading - mean.euler.heading));
+    sum_of_squares += error.cwiseAbs2();
+  }
+  const Eigen::Vector3d sampled = (sum_of_squares / kSamples).cwiseSqrt();
+  for (int i = 0; i < 3; ++i) {
+    // A sigma from n samples errs by 1 / sqrt(2 n) = 0.5 %; four times that.
+    EXPECT_NEAR(sampled[i] / mean.sigma[i], 1, 0.02) << i;
+  }
+}
+
+}  // namespace
+}  // namespace foucault
