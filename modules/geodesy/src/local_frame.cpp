@@ -31,4 +31,9 @@ Eigen::Vector3d LocalFrame::gravity_w(const Eigen::Vector3d& p_w) const {
   return wgs84::normal_gravity(place.latitude, place.height) * R_w_n(place).col(2);
 }
 
+Eigen::Vector3d ned_offset(const Geodetic& from, const Geodetic& to) {
+  const Eigen::Vector3d p_w = LocalFrame(from).to_local(to);
+  return {p_w.x(), p_w.y(), from.height - to.height};
+}
+
 }  // namespace foucault

@@ -90,6 +90,19 @@ TEST(LocalFrame, EarthRateIsTheSameAxisEverywhere) {
   EXPECT_EQ(frame.earth_rate_w().y(), 0);  // paper (10)
 }
 
+TEST(NedOffset, IsMetresAlongTheHorizonAndHeights) {
+  const Geodetic from = degrees(52, 179.9999, 100);
+  Geodetic to = from;
+  to.latitude += 100 / (wgs84::meridian_radius(from.latitude) + 100);
+  to.longitude = so3::wrap(from.longitude + 50 / ((wgs84::transverse_radius(from.latitude) + 100) *
+                                                  std::cos(from.latitude)));
+  to.height = 97;
+  // Radii instead of the horizon: 100 m * 100 m / R, and 3 m of height on 6400 km.
+  EXPECT_LT((ned_offset(from, to) - Eigen::Vector3d(100, 50, 3)).norm(), 3e-3);
+  EXPECT_EQ(ned_offset(from, to).z(), 3);
+  EXPECT_EQ(ned_offset(from, from), Eigen::Vector3d::Zero());
+}
+
 TEST(LocalFrame, GravityAtTheOriginPointsDown) {
   const LocalFrame frame(degrees(30.5, 114.3, 23));
   EXPECT_EQ(frame.gravity_w().x(), 0);

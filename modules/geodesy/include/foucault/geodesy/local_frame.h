@@ -27,7 +27,9 @@ class LocalFrame {
   /// Normal gravity at the origin [m/s^2]. Paper (9).
   Eigen::Vector3d gravity_w() const;
 
-  /// Normal gravity vector at p_w, in w [m/s^2]: its direction turns with the place.
+  /// Normal gravity vector at p_w, in w [m/s^2]: down along the ellipsoid's normal of that place,
+  /// so its direction turns by 0.16 mrad per km. The plumb line's curvature, 8e-9 m/s^2 per metre
+  /// of height, is left out.
   Eigen::Vector3d gravity_w(const Eigen::Vector3d& p_w) const;
 
  private:
@@ -36,5 +38,9 @@ class LocalFrame {
   Eigen::Matrix3d R_e_w_;
   Eigen::Vector3d earth_rate_w_;
 };
+
+/// `to` minus `from`: north and east along the horizon of `from`, down as the difference of
+/// heights [m], so that a horizontal distance d does not show as a height of d^2 / 2R.
+Eigen::Vector3d ned_offset(const Geodetic& from, const Geodetic& to);
 
 }  // namespace foucault
