@@ -1,0 +1,113 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <limits>
+#include <optional>
+
+#include "foucault/core/interfaces.h"
+#include "foucault/core/result.h"
+
+namespace foucault {
+
+/// Fixes of a run. Root mean squares and the mean NIS are over the used ones from the start of
+/// the statistics on; the counts are over all.
+struct GnssMetrics {
+  int64_t used = 0;
+  int64_t rejected = 0;                                        ///< for whatever reason
+  int64_t samples = 0;                                         ///< used fixes behind the statistics
+  Eigen::Vector3d innovation_rms_n = Eigen::Vector3d::Zero();  ///< north, east, down [m]
+  Eigen::Vector3d postfit_rms_n = Eigen::Vector3d::Zero();     ///< [m]
+  double mean_nis = 0;  ///< innovation, squared by its covariance; 3 if that is right
+};
+
+/// How often an error lies inside 1, 2 and 3 of its sigmas, each axis; Gaussian errors do with
+/// 0.683, 0.954, 0.997.
+struct InsideSigma {
+  int64_t samples = 0;
+  Eigen::Matrix3d fraction = Eigen::Matrix3d::Zero();  ///< row: axis, column: 1, 2, 3 sigma
+};
+
+/// Errors against a reference, from the start of the statistics on.
+struct ReferenceMetrics {
+  int64_t samples = 0;                  ///< epochs with a reference
+  double horizontal_rmse = 0;           ///< root of mean (north^2 + east^2) [m]
+  double vertical_rmse = 0;             ///< [m]
+  std::optional<double> velocity_rmse;  ///< of the 3D error [m/s]
+  std::optional<double> roll_rmse, pitch_rmse, heading_rmse;  ///< of the vehicle [rad]
+  InsideSigma position_inside;                                ///< north, east, down
+  InsideSigma velocity_inside;                                ///< north, east, down
+  InsideSigma attitude_inside;                                ///< roll, pitch, heading
+  /// Error squared by its covariance, mean over the epochs; 3 if the covariance is right.
+  std::optional<double> position_nees, velocity_nees, attitude_nees;
+};
+
+struct RunMetrics {
+  int64_t epochs = 0;
+  double duration_s = 0;  ///< from the first to the last epoch
+  GnssMetrics gnss;
+  std::optional<ReferenceMetrics> reference;  ///< none if no epoch had a reference
+};
+
+/// Normalized estimation error squared, e' P^-1 e. None if P is not positive definite.
+std::optional<double> normalized_square(const Eigen::Vector3d& error,
+                                        const Eigen::Matrix3d& covariance);
+
+/// Collects the metrics of a run, in constant memory.
+class RunMetricsCollector : public Sink {
+ public:
+  /// Statistics count from `from_ns` on (a settling time is left out); counts of epochs and fixes
+  /// and the duration are over the whole run.
+  explicit RunMetricsCollector(const Mounting& mounting,
+                               int64_t from_ns = std::numeric_limits<int64_t>::min());
+
+  void epoch(const Epoch& epoch) override;
+  void fix(const FixResult& fix) override;
+  void reference_error(const Epoch& epoch, const ReferenceError& error);
+
+  RunMetrics metrics() const;
+
+ private:
+  /// Mean squares of three-vectors.
+  struct Squares {
+    int64_t samples = 0;
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    void add(const Eigen::Vector3d& value);
+    Eigen::Vector3d mean() const;
+  };
+
+  struct Mean {
+    int64_t samples = 0;
+    double sum = 0;
+    void add(std::optional<double> value);
+    std::optional<double> value() const;
+  };
+
+  /// Errors of one kind with their covariances.
+  struct Errors {
+    Squares squares;
+    Eigen::Matrix3d inside = Eigen::Matrix3d::Zero();
+    Mean nees;
+    void add(const Eigen::Vector3d& error, const Eigen::Vector3d& sigma);
+    InsideSigma inside_sigma() const;
+  };
+
+  void add_attitude(const Epoch& epoch, const Eigen::Vector3d& euler_error);
+  ReferenceMetrics reference_metrics() const;
+
+  Mounting mounting_;
+  int64_t from_ns_;
+  int64_t epochs_ = 0;
+  int64_t first_ns_ = 0;
+  int64_t last_ns_ = 0;
+  int64_t used_ = 0;
+  int64_t rejected_ = 0;
+  Squares innovation_;
+  Squares postfit_;
+  Mean nis_;
+  Errors position_;
+  Errors velocity_;
+  Errors attitude_;
+};
+
+}  // namespace foucault

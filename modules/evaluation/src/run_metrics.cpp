@@ -1,0 +1,147 @@
+#include "foucault/evaluation/run_metrics.h"
+
+#include <Eigen/Cholesky>
+#include <cmath>
+
+#include "foucault/core/so3.h"
+#include "foucault/core/state.h"
+#include "foucault/core/time.h"
+#include "foucault/core/vehicle_attitude.h"
+
+namespace foucault {
+namespace {
+
+/// Right perturbation, in v, that leads from the estimate to the truth.
+Eigen::Vector3d rotation_error(const VehicleAttitude& attitude,
+                               const Eigen::Vector3d& euler_error) {
+  const so3::Euler truth{attitude.euler.roll - euler_error[0],
+                         attitude.euler.pitch - euler_error[1],
+                         attitude.euler.heading - euler_error[2]};
+  return so3::log(attitude.q_n_v.conjugate() * so3::from_euler(truth));
+}
+
+}  // namespace
+
+std::optional<double> normalized_square(const Eigen::Vector3d& error,
+                                        const Eigen::Matrix3d& covariance) {
+  const Eigen::LLT<Eigen::Matrix3d> llt(covariance);
+  if (llt.info() != Eigen::Success) return std::nullopt;
+  const Eigen::Vector3d whitened = llt.matrixL().solve(error);
+  const double square = whitened.squaredNorm();
+  return std::isfinite(square) ? std::optional(square) : std::nullopt;
+}
+
+void RunMetricsCollector::Squares::add(const Eigen::Vector3d& value) {
+  ++samples;
+  sum += value.cwiseAbs2();
+}
+
+Eigen::Vector3d RunMetricsCollector::Squares::mean() const {
+  if (samples == 0) return Eigen::Vector3d::Zero();
+  return sum / static_cast<double>(samples);
+}
+
+void RunMetricsCollector::Mean::add(std::optional<double> value) {
+  if (!value) return;
+  ++samples;
+  sum += *value;
+}
+
+std::optional<double> RunMetricsCollector::Mean::value() const {
+  if (samples == 0) return std::nullopt;
+  return sum / static_cast<double>(samples);
+}
+
+void RunMetricsCollector::Errors::add(const Eigen::Vector3d& error, const Eigen::Vector3d& sigma) {
+  squares.add(error);
+  for (int axis = 0; axis < 3; ++axis) {
+    for (int k = 0; k < 3; ++k) {
+      if (std::abs(error[axis]) <= (k + 1) * sigma[axis]) inside(axis, k) += 1;
+    }
+  }
+}
+
+InsideSigma RunMetricsCollector::Errors::inside_sigma() const {
+  if (squares.samples == 0) return {};
+  return {squares.samples, inside / static_cast<double>(squares.samples)};
+}
+
+RunMetricsCollector::RunMetricsCollector(const Mounting& mounting, int64_t from_ns)
+    : mounting_(mounting), from_ns_(from_ns) {}
+
+void RunMetricsCollector::epoch(const Epoch& epoch) {
+  if (epochs_ == 0) first_ns_ = epoch.t_ns;
+  last_ns_ = epoch.t_ns;
+  ++epochs_;
+}
+
+void RunMetricsCollector::fix(const FixResult& fix) {
+  if (fix.verdict != FixVerdict::used) {
+    ++rejected_;
+    return;
+  }
+  ++used_;
+  if (fix.t_ns < from_ns_) return;
+  innovation_.add(fix.innovation_n);
+  postfit_.add(fix.postfit_n);
+  nis_.add(normalized_square(fix.innovation_n, fix.innovation_covariance));
+}
+
+void RunMetricsCollector::reference_error(const Epoch& epoch, const ReferenceError& error) {
+  if (error.t_ns < from_ns_) return;
+  const auto covariance = [&epoch](int offset) -> Eigen::Matrix3d {
+    return epoch.covariance.block<3, 3>(offset, offset);
+  };
+  const auto add = [](Errors& errors, const Eigen::Vector3d& value, const Eigen::Matrix3d& P) {
+    errors.add(value, P.diagonal().cwiseMax(0).cwiseSqrt());
+    errors.nees.add(normalized_square(value, P));
+  };
+  add(position_, error.position_n, covariance(error_state::kPosition));
+  if (error.velocity_n) add(velocity_, *error.velocity_n, covariance(error_state::kVelocity));
+  if (error.euler) add_attitude(epoch, *error.euler);
+}
+
+void RunMetricsCollector::add_attitude(const Epoch& epoch, const Eigen::Vector3d& euler_error) {
+  const VehicleAttitude attitude = vehicle_attitude(epoch, mounting_);
+  attitude_.add(euler_error, attitude.sigma);
+  attitude_.nees.add(
+      normalized_square(rotation_error(attitude, euler_error), attitude.covariance_v));
+}
+
+ReferenceMetrics RunMetricsCollector::reference_metrics() const {
+  ReferenceMetrics m;
+  m.samples = position_.squares.samples;
+  const Eigen::Vector3d position = position_.squares.mean();
+  m.horizontal_rmse = std::sqrt(position.x() + position.y());
+  m.vertical_rmse = std::sqrt(position.z());
+  if (velocity_.squares.samples > 0) m.velocity_rmse = std::sqrt(velocity_.squares.mean().sum());
+  if (attitude_.squares.samples > 0) {
+    const Eigen::Vector3d rmse = attitude_.squares.mean().cwiseSqrt();
+    m.roll_rmse = rmse[0];
+    m.pitch_rmse = rmse[1];
+    m.heading_rmse = rmse[2];
+  }
+  m.position_inside = position_.inside_sigma();
+  m.velocity_inside = velocity_.inside_sigma();
+  m.attitude_inside = attitude_.inside_sigma();
+  m.position_nees = position_.nees.value();
+  m.velocity_nees = velocity_.nees.value();
+  m.attitude_nees = attitude_.nees.value();
+  return m;
+}
+
+RunMetrics RunMetricsCollector::metrics() const {
+  RunMetrics m;
+  m.epochs = epochs_;
+  m.duration_s = seconds_between(first_ns_, last_ns_);
+  m.gnss.used = used_;
+  m.gnss.rejected = rejected_;
+  m.gnss.samples = innovation_.samples;
+  m.gnss.innovation_rms_n = innovation_.mean().cwiseSqrt();
+  m.gnss.postfit_rms_n = postfit_.mean().cwiseSqrt();
+  m.gnss.mean_nis = nis_.value().value_or(0);
+  if (position_.squares.samples > 0) m.reference = reference_metrics();
+  return m;
+}
+
+}  // namespace foucault
