@@ -1,0 +1,17 @@
+#include "command.h"
+
+namespace foucault::app {
+
+const std::vector<Command>& commands() {
+  static const std::vector<Command> all{
+      {"demo", "simulate a trip, process it and draw its report", declare_demo},
+      {"simulate", "write a simulated recording with its truth", declare_simulate},
+      {"import", "turn recordings in other formats into a rawlog", declare_import},
+      {"info", "contents, rates, gaps and health of a rawlog", declare_info},
+      {"run", "process a rawlog: solution files, metrics, report", declare_run},
+      {"report", "draw a report again from its numbers", declare_report},
+  };
+  return all;
+}
+
+}  // namespace foucault::app

@@ -1,0 +1,154 @@
+#include <fmt/format.h>
+
+#include <iterator>
+#include <memory>
+#include <optional>
+
+#include "arguments.h"
+#include "command.h"
+#include "config_arguments.h"
+#include "foucault/core/error.h"
+#include "foucault/core/time.h"
+#include "foucault/rawlog/import_csv.h"
+#include "foucault/rawlog/import_i2nav.h"
+#include "foucault/rawlog/import_rtklib.h"
+#include "rawlog_summary.h"
+#include "units.h"
+
+namespace foucault::app {
+namespace {
+
+using Action = std::function<void(Call&)>;
+
+std::string stream_line(const std::string& name, const ImportStream& s) {
+  std::string line = fmt::format("{:<10} {} from {}, {} .. {} ({:.1f} s)", name, s.written, s.file,
+                                 format_utc(s.first_ns), format_utc(s.last_ns),
+                                 seconds_between(s.first_ns, s.last_ns));
+  if (s.without_fix > 0) line += fmt::format(", {} rows without a fix", s.without_fix);
+  return line;
+}
+
+void report_stream(Console& console, const std::string& name, const ImportStream& s) {
+  console.say(stream_line(name, s));
+  if (s.skipped > 0) {
+    console.warn(
+        fmt::format("{}: skipped {} bad rows, the first: {}", s.file, s.skipped, s.first_skipped));
+  }
+}
+
+void report_summary(Console& console, const ImportSummary& summary, const std::string& out) {
+  report_stream(console, "IMU", summary.imu);
+  report_stream(console, "GNSS", summary.gnss);
+  if (summary.reference) report_stream(console, "reference", *summary.reference);
+  std::string qualities;
+  for (const auto& [quality, count] : summary.qualities) {
+    qualities +=
+        fmt::format("{}{} {}", qualities.empty() ? "" : ", ", count, quality_name(quality));
+  }
+  console.say(
+      fmt::format("{:<10} {}; {} with velocity", "fixes", qualities, summary.with_velocity));
+  if (summary.wheel_speeds > 0) {
+    console.say(fmt::format("{:<10} {}", "wheels", summary.wheel_speeds));
+  }
+  const Eigen::Vector3d& arm = summary.lever_arm_v;
+  console.say(fmt::format("{:<10} forward {:.3f}, right {:.3f}, down {:.3f} m", "lever arm",
+                          arm.x(), arm.y(), arm.z()));
+  console.say(fmt::format("{:<10} {}", "written", out));
+}
+
+void add_common(CLI::App& app, ImportOptions& options) {
+  app.add_option("--out", options.out, "Rawlog to write")->required();
+  app.add_flag("--skip-bad-rows", options.skip_bad_rows,
+               "Leave out rows that are wrong, and count them, instead of stopping");
+}
+
+constexpr const char* kLeverArmHelp =
+    "IMU to antenna along the vehicle's forward, right, down [m]: X,Y,Z";
+
+Action declare_i2nav(CLI::App& app) {
+  struct Options {
+    I2navImport import;
+    std::string lever_arm;
+  };
+  const auto o = std::make_shared<Options>();
+  app.add_option("--imu", o->import.imu,
+                 "Increments: sow, dtheta x y z [rad], dvel x y z [m/s] (.txt or .gz)")
+      ->required();
+  app.add_option("--gnss", o->import.gnss,
+                 "Fixes: sow, latitude, longitude [deg], height [m], sigma north, east, down [m]")
+      ->required();
+  app.add_option("--reference", o->import.reference, "Reference trajectory (.nav)");
+  app.add_option("--gps-week", o->import.gps_week,
+                 "GPS week of the first row; without it the reference's");
+  app.add_option("--lever-arm", o->lever_arm, kLeverArmHelp)->required();
+  add_common(app, o->import);
+  return [o](Call& call) {
+    o->import.lever_arm = parse_vector3("--lever-arm", o->lever_arm);
+    o->import.progress = call.console.progress_of("importing");
+    report_summary(call.console, import_i2nav(o->import), o->import.out);
+  };
+}
+
+/// `rtklib` and `csv` take the same options.
+template <class Import>
+Action declare_mapped(CLI::App& app, ImportSummary (*import)(const Import&),
+                      const char* gnss_help) {
+  struct Options {
+    Import import;
+    std::optional<std::string> lever_arm;
+  };
+  const auto o = std::make_shared<Options>();
+  app.add_option("--mapping", o->import.mapping,
+                 "YAML that names columns, units, axes, clocks and the lever arm")
+      ->required();
+  app.add_option("--data", o->import.data_dir,
+                 "Folder of the files that the mapping names; without it the mapping's own");
+  app.add_option("--imu", o->import.imu, "IMU table, instead of the mapping's");
+  app.add_option("--gnss", o->import.gnss, gnss_help);
+  app.add_option("--reference", o->import.reference, "Reference table, instead of the mapping's");
+  app.add_option("--lever-arm", o->lever_arm, kLeverArmHelp);
+  add_common(app, o->import);
+  return [o, import](Call& call) {
+    if (o->lever_arm) o->import.lever_arm = parse_vector3("--lever-arm", *o->lever_arm);
+    o->import.progress = call.console.progress_of("importing");
+    report_summary(call.console, import(o->import), o->import.out);
+  };
+}
+
+std::string mapping_help() {
+  ImportMapping mapping;
+  return describe_config(mapping);
+}
+
+}  // namespace
+
+Action declare_import(CLI::App& app) {
+  app.require_subcommand(1);
+  app.footer(
+      "\nExamples:\n"
+      "  foucault import i2nav --imu ADIS16465.txt --gnss GNSS_RTK.pos --reference truth.nav \\\n"
+      "      --gps-week 2017 --lever-arm -0.073,0.302,0.087 --out trip.rawlog\n"
+      "  foucault import rtklib --gnss drive.pos --imu imu.csv --mapping drive.yaml --out "
+      "drive.rawlog\n"
+      "  foucault import csv --mapping drive.yaml --out drive.rawlog");
+  CLI::App* i2nav = app.add_subcommand("i2nav", "Text files of the i2Nav group (.txt, .pos, .nav)");
+  CLI::App* rtklib = app.add_subcommand("rtklib", "A solution of RTKLIB (.pos) and an IMU table");
+  CLI::App* csv = app.add_subcommand("csv", "Tables in columns, told by a mapping");
+  for (CLI::App* format : {i2nav, rtklib, csv}) format->fallthrough();
+  const Action import_from_i2nav = declare_i2nav(*i2nav);
+  const Action import_from_rtklib = declare_mapped<RtklibImport>(
+      *rtklib, import_rtklib, "RTKLIB's .pos, instead of the mapping's");
+  const Action import_from_csv =
+      declare_mapped<CsvImport>(*csv, import_csv, "GNSS table, instead of the mapping's");
+  for (CLI::App* format : {rtklib, csv}) {
+    add_help_text(*format, "--help-mapping",
+                  "List every key of a mapping, with default and meaning", mapping_help);
+  }
+  return [=](Call& call) {
+    if (i2nav->parsed()) import_from_i2nav(call);
+    if (rtklib->parsed()) import_from_rtklib(call);
+    if (csv->parsed()) import_from_csv(call);
+  };
+}
+
+}  // namespace foucault::app

@@ -1,0 +1,56 @@
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "command.h"
+#include "config_arguments.h"
+#include "methods.h"
+#include "run_job.h"
+
+namespace foucault::app {
+namespace {
+
+std::string method_help() {
+  std::string help = "Method:";
+  for (const Method& method : methods()) {
+    help += fmt::format("\n  {}: {}", method.name, method.summary);
+  }
+  return help;
+}
+
+std::string config_help() {
+  Settings settings;
+  return describe_config(settings);
+}
+
+}  // namespace
+
+std::function<void(Call&)> declare_run(CLI::App& app) {
+  struct Options {
+    RunJob job;
+    ConfigArguments config;
+    bool no_report = false;
+  };
+  const auto o = std::make_shared<Options>();
+  app.add_option("LOG", o->job.log, "Rawlog to process")->required();
+  app.add_option("--method", o->job.method, method_help())->capture_default_str();
+  add_config_options(app, o->config, config_help);
+  app.add_option("--out", o->job.out, "Folder for solution.csv, .tum, .kml, metrics.json, report/")
+      ->required();
+  app.add_flag("--no-report", o->no_report, "Draw no figures");
+  app.footer(
+      "\nExamples:\n"
+      "  foucault run trip.rawlog --out trip\n"
+      "  foucault run trip.rawlog --method rough --set imu.preset=ICM20602 --out trip-rough\n"
+      "  foucault run trip.rawlog --config car.yaml --set output.rate=imu --out trip\n"
+      "The configuration that was in force is written to DIR/config.yaml, ready for --config.");
+  return [o](Call& call) {
+    apply(o->config, o->job.settings);
+    o->job.report = !o->no_report;
+    o->job.command_line = call.command_line;
+    const RunResult result = run(o->job, call.console);
+    for (const std::string& line : summary_lines(result)) call.console.say(line);
+  };
+}
+
+}  // namespace foucault::app

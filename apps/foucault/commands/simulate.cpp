@@ -1,0 +1,49 @@
+#include <fmt/format.h>
+
+#include <memory>
+#include <optional>
+
+#include "command.h"
+#include "config_arguments.h"
+#include "simulation_job.h"
+
+namespace foucault::app {
+
+std::function<void(Call&)> declare_simulate(CLI::App& app) {
+  struct Options {
+    std::optional<std::string> imu;
+    std::optional<double> duration;
+    std::optional<int64_t> seed;
+    ConfigArguments config;
+    std::string out;
+  };
+  const auto o = std::make_shared<Options>();
+  app.add_option("--imu", o->imu, "IMU preset, short for --set imu.preset=NAME");
+  app.add_option("--duration", o->duration, "Length [s], short for --set scenario.duration_s=N");
+  app.add_option("--seed", o->seed, "Seed of trip and noise, short for --set scenario.seed=N");
+  add_config_options(app, o->config, [] {
+    SimulationSettings settings;
+    return describe_config(settings);
+  });
+  app.add_option("--out", o->out, "Rawlog to write")->required();
+  app.footer(
+      "\nExamples:\n"
+      "  foucault simulate --imu ADIS16465 --duration 600 --seed 7 --out trip.rawlog\n"
+      "  foucault simulate --set scenario.name=motorway --set scenario.gnss_rate_hz=5 --out "
+      "m.rawlog");
+  return [o](Call& call) {
+    SimulationSettings settings;
+    apply(o->config, settings);
+    if (o->imu) settings.imu.preset = *o->imu;
+    if (o->duration) set_config(fmt::format("scenario.duration_s={}", *o->duration), settings);
+    if (o->seed) set_config(fmt::format("scenario.seed={}", *o->seed), settings);
+    const SimulationCounts counts = write_simulation(settings, o->out, call.console);
+    call.console.say(
+        fmt::format("{}: {:.1f} s of '{}' with {}, {} IMU samples, {} fixes, {} poses "
+                    "of the truth",
+                    o->out, settings.scenario.duration_s, settings.scenario.name,
+                    settings.imu.preset, counts.imu_samples, counts.fixes, counts.reference_poses));
+  };
+}
+
+}  // namespace foucault::app

@@ -1,0 +1,111 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <exception>
+#include <functional>
+#include <map>
+#include <new>
+#include <string>
+
+#include "command.h"
+#include "console.h"
+#include "foucault/core/error.h"
+#include "interrupt.h"
+#include "version.h"
+
+namespace foucault::app {
+namespace {
+
+constexpr int kBadData = 1;
+constexpr int kBadUsage = 2;
+constexpr int kInterrupted = 130;
+
+constexpr const char* kFooter =
+    "\nExamples:\n"
+    "  foucault demo                                       a first look, with simulated data\n"
+    "  foucault import i2nav --imu imu.txt --gnss rtk.pos --gps-week 2200 \\\n"
+    "      --lever-arm 0.1,-0.3,-0.8 --out trip.rawlog     a recording into a rawlog\n"
+    "  foucault info trip.rawlog                           what is in it\n"
+    "  foucault run trip.rawlog --out trip                 process it; see trip/report/index.html\n"
+    "\n'foucault COMMAND --help' tells the options of a command.\n"
+    "Exit codes: 0 all right, 1 bad data, 2 wrong usage.";
+
+std::string join_arguments(int argc, char** argv) {
+  std::string joined = "foucault";
+  for (int i = 1; i < argc; ++i) joined += fmt::format(" {}", argv[i]);
+  return joined;
+}
+
+class Program {
+ public:
+  Program() {
+    app_.footer(kFooter);
+    app_.set_version_flag("--version", std::string("foucault ") + kVersion);
+    app_.require_subcommand(1);
+    for (const Command& command : commands()) add(command);
+  }
+
+  int run(int argc, char** argv) {
+    app_.parse(argc, argv);
+    watch_interrupts();
+    Console console(quiet_);
+    Call call{console, join_arguments(argc, argv)};
+    actions_.at(app_.get_subcommands().front())(call);
+    return 0;
+  }
+
+  /// Answers --help and --version, or says what is wrong with the command line.
+  int answer(const CLI::ParseError& error) const {
+    if (error.get_exit_code() == 0) return app_.exit(error);
+    print_error(fmt::format("{}; see '{} --help'", error.what(), deepest_command()));
+    return kBadUsage;
+  }
+
+ private:
+  void add(const Command& command) {
+    CLI::App* sub = app_.add_subcommand(command.name, command.summary);
+    sub->add_flag("-q,--quiet", quiet_, "Say only what goes wrong");
+    actions_.emplace(sub, command.declare(*sub));
+  }
+
+  std::string deepest_command() const {
+    std::string name = "foucault";
+    for (const CLI::App* app = &app_; !app->get_subcommands().empty();) {
+      app = app->get_subcommands().front();
+      name += " " + app->get_name();
+    }
+    return name;
+  }
+
+  CLI::App app_{"Foucault: post-processing of GNSS/IMU recordings"};
+  bool quiet_ = false;
+  std::map<const CLI::App*, std::function<void(Call&)>> actions_;
+};
+
+int guarded_run(int argc, char** argv) {
+  Program program;
+  try {
+    return program.run(argc, argv);
+  } catch (const HelpText& help) {
+    fmt::print("{}", help.what());
+    return 0;
+  } catch (const CLI::ParseError& error) {
+    return program.answer(error);
+  } catch (const UsageError& error) {
+    print_error(error.what());
+    return kBadUsage;
+  } catch (const Interrupted& error) {
+    print_error(error.what());
+    return kInterrupted;
+  } catch (const std::bad_alloc&) {
+    print_error("out of memory");
+  } catch (const std::exception& error) {
+    print_error(error.what());
+  }
+  return kBadData;
+}
+
+}  // namespace
+}  // namespace foucault::app
+
+int main(int argc, char** argv) { return foucault::app::guarded_run(argc, argv); }

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "foucault/core/interfaces.h"
+#include "settings.h"
+
+/// The methods that `run` and `evaluate` know. A new one is a function and a line in methods.cpp.
+namespace foucault::app {
+
+using EstimatorFactory = std::unique_ptr<Estimator> (*)(const Settings& settings,
+                                                        const Mounting& mounting, Sink& sink);
+
+struct Method {
+  std::string name;
+  std::string summary;
+  EstimatorFactory make;
+};
+
+/// In the order shown to users.
+const std::vector<Method>& methods();
+
+/// Throws UsageError naming the known methods.
+const Method& find_method(const std::string& name);
+
+/// The names, for help: "refined, rough".
+std::string method_names();
+
+}  // namespace foucault::app

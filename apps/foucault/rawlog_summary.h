@@ -1,0 +1,16 @@
+#pragma once
+
+#include <string>
+
+#include "foucault/rawlog/rawlog_info.h"
+
+namespace foucault::app {
+
+/// Contents of a rawlog for people and for programs.
+std::string rawlog_text(const RawlogInfo& info);
+std::string rawlog_json(const RawlogInfo& info);
+
+/// Name of a fix quality in outputs, e.g. "fixed_rtk".
+std::string quality_name(FixQuality quality);
+
+}  // namespace foucault::app

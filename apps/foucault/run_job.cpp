@@ -1,0 +1,97 @@
+#include "run_job.h"
+
+#include <fmt/format.h>
+
+#include <memory>
+#include <optional>
+#include <variant>
+
+#include "foucault/core/error.h"
+#include "foucault/rawlog/rawlog_source.h"
+#include "foucault/reports/run_report.h"
+#include "methods.h"
+#include "output_directory.h"
+#include "run_metrics_text.h"
+#include "run_output.h"
+#include "text_file.h"
+#include "version.h"
+
+namespace foucault::app {
+namespace {
+
+void process(RawlogSource& source, Estimator& estimator, RunOutput& output, Console& console) {
+  while (const std::optional<Measurement> measurement = source.next()) {
+    output.measurement(*measurement);
+    estimator.process(*measurement);
+    console.progress("processing", source.progress());
+  }
+  estimator.finish();
+  for (const Notice& notice : source.notices()) output.notice(notice);
+}
+
+reports::RunLabels labels(const RunJob& job, const std::string& config) {
+  return {std::filesystem::path(job.log).filename().string(), job.method, kVersion,
+          job.command_line, config};
+}
+
+void write_report(const RunResult& result, reports::RunReport& report,
+                  const std::filesystem::path& folder, Console& console) {
+  console.progress("drawing", 0);
+  for (const reports::KeyNumber& number : key_numbers(result)) report.key_number(number);
+  for (const reports::Table& table : metrics_tables(result)) report.table(table);
+  report.write((folder / "report").string());
+}
+
+}  // namespace
+
+RunResult run_into(const RunJob& job, const std::filesystem::path& folder, Console& console) {
+  const ResourceMeter meter;
+  Settings settings = job.settings;
+  const std::string config = dump_config(settings);
+  const Method& method = find_method(job.method);
+
+  RawlogSource source(job.log, settings.imu.sample_kind(), settings.rawlog);
+  std::optional<reports::RunReport> report;
+  if (job.report) report.emplace(labels(job, config), source.mounting());
+  RunOutput output(folder, source.mounting(), settings.output, report ? &*report : nullptr,
+                   console);
+  const std::unique_ptr<Estimator> estimator = method.make(settings, source.mounting(), output);
+  process(source, *estimator, output, console);
+
+  RunResult result;
+  result.method = job.method;
+  result.log = std::filesystem::path(job.log).filename().string();
+  result.out = job.out;
+  result.report = job.report;
+  result.statistics_from_s = settings.output.statistics_from_s;
+  result.metrics = output.finish();
+  if (result.metrics.epochs == 0) {
+    throw DataError(fmt::format("'{}': no epoch came out of the data", job.log));
+  }
+  result.resources = meter.used();
+  write_text_file(folder / "metrics.json", metrics_json(result));
+  write_text_file(folder / "config.yaml", config);
+  if (report) write_report(result, *report, folder, console);
+  return result;
+}
+
+RunResult run(const RunJob& job, Console& console) {
+  find_method(job.method);
+  job.settings.imu.noise();
+  OutputDirectory out(job.out);
+  const RunResult result = run_into(job, out.staging(), console);
+  out.commit();
+  return result;
+}
+
+std::vector<std::string> summary_lines(const RunResult& result) {
+  std::vector<std::string> lines = metrics_lines(result);
+  lines.push_back(fmt::format("written    {}", result.out));
+  if (result.report) {
+    const std::filesystem::path page = std::filesystem::path(result.out) / "report" / "index.html";
+    lines.push_back(fmt::format("report     {}", page.string()));
+  }
+  return lines;
+}
+
+}  // namespace foucault::app

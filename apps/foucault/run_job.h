@@ -1,0 +1,45 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "console.h"
+#include "foucault/evaluation/run_metrics.h"
+#include "resources.h"
+#include "settings.h"
+
+namespace foucault::app {
+
+/// One log, one method.
+struct RunJob {
+  std::string log;
+  std::string method = "refined";
+  Settings settings;
+  std::string out;     ///< folder
+  bool report = true;  ///< draw the figures
+  std::string command_line;
+};
+
+struct RunResult {
+  std::string method;
+  std::string log;
+  std::string out;
+  bool report = true;
+  RunMetrics metrics;
+  double statistics_from_s = 0;
+  Resources resources;  ///< of reading and estimating, without the report
+};
+
+/// Processes the log and writes solution.csv, .tum, .kml, metrics.json, config.yaml and report/ to
+/// job.out: all of it or, if something goes wrong, nothing. Throws DataError, UsageError,
+/// Interrupted.
+RunResult run(const RunJob& job, Console& console);
+
+/// The same into a folder that exists, with no care for what is in it.
+RunResult run_into(const RunJob& job, const std::filesystem::path& folder, Console& console);
+
+/// What a user wants to know first.
+std::vector<std::string> summary_lines(const RunResult& result);
+
+}  // namespace foucault::app

@@ -1,0 +1,176 @@
+#include "run_metrics_text.h"
+
+#include <fmt/format.h>
+
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "units.h"
+#include "version.h"
+
+namespace foucault::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json number_or_null(const std::optional<double>& value, double factor = 1) {
+  return value ? Json(*value * factor) : Json(nullptr);
+}
+
+Json north_east_down(const Eigen::Vector3d& v, bool exists) {
+  if (!exists) return {{"north", nullptr}, {"east", nullptr}, {"down", nullptr}};
+  return {{"north", v.x()}, {"east", v.y()}, {"down", v.z()}};
+}
+
+/// Mean over the axes of the share inside 1, 2, 3 sigma; null if there is none.
+Json inside_json(const InsideSigma& inside) {
+  if (inside.samples == 0) return nullptr;
+  const Eigen::RowVector3d mean = inside.fraction.colwise().mean();
+  return {{"1_sigma", mean[0]}, {"2_sigma", mean[1]}, {"3_sigma", mean[2]}};
+}
+
+Json gnss_json(const GnssMetrics& gnss) {
+  const bool exists = gnss.samples > 0;
+  return {{"used", gnss.used},
+          {"rejected", gnss.rejected},
+          {"innovation_rms_m", north_east_down(gnss.innovation_rms_n, exists)},
+          {"postfit_rms_m", north_east_down(gnss.postfit_rms_n, exists)},
+          {"mean_nis", exists ? Json(gnss.mean_nis) : Json(nullptr)},
+          {"samples", gnss.samples}};
+}
+
+Json reference_json(const ReferenceMetrics& reference) {
+  return {{"horizontal_rmse_m", reference.horizontal_rmse},
+          {"vertical_rmse_m", reference.vertical_rmse},
+          {"roll_rmse_deg", number_or_null(reference.roll_rmse, kDegrees)},
+          {"pitch_rmse_deg", number_or_null(reference.pitch_rmse, kDegrees)},
+          {"heading_rmse_deg", number_or_null(reference.heading_rmse, kDegrees)},
+          {"velocity_rmse_m_s", number_or_null(reference.velocity_rmse)},
+          {"position_inside", inside_json(reference.position_inside)},
+          {"velocity_inside", inside_json(reference.velocity_inside)},
+          {"attitude_inside", inside_json(reference.attitude_inside)},
+          {"position_nees", number_or_null(reference.position_nees)},
+          {"velocity_nees", number_or_null(reference.velocity_nees)},
+          {"attitude_nees", number_or_null(reference.attitude_nees)},
+          {"samples", reference.samples}};
+}
+
+std::string centimetres(const Eigen::Vector3d& v) {
+  return fmt::format("{:.2f} / {:.2f} / {:.2f} cm", 100 * v.x(), 100 * v.y(), 100 * v.z());
+}
+
+std::string attitude_text(const ReferenceMetrics& r) {
+  if (!r.roll_rmse || !r.pitch_rmse || !r.heading_rmse) return "";
+  return fmt::format("; roll {:.3f}, pitch {:.3f}, heading {:.3f} deg", *r.roll_rmse * kDegrees,
+                     *r.pitch_rmse * kDegrees, *r.heading_rmse * kDegrees);
+}
+
+std::string percent(double fraction) { return fmt::format("{:.1f} %", 100 * fraction); }
+
+std::string degrees_or_dash(const std::optional<double>& angle) {
+  return angle ? fmt::format("{:.4f} deg", *angle * kDegrees) : "-";
+}
+
+reports::Table gnss_table(const GnssMetrics& gnss) {
+  reports::Table table;
+  table.title = "GNSS";
+  table.note =
+      "Innovation: the fix minus its prediction before it is used. Root mean squares over " +
+      fmt::format("{} fixes; mean NIS {:.2f} (3 if the covariances are right).", gnss.samples,
+                  gnss.mean_nis);
+  table.header = {"", "north [m]", "east [m]", "down [m]"};
+  const auto row = [](const char* name, const Eigen::Vector3d& v) {
+    return std::vector<std::string>{name, fmt::format("{:.4f}", v.x()),
+                                    fmt::format("{:.4f}", v.y()), fmt::format("{:.4f}", v.z())};
+  };
+  table.rows = {row("innovation RMS", gnss.innovation_rms_n),
+                row("post-fit RMS", gnss.postfit_rms_n)};
+  return table;
+}
+
+reports::Table reference_table(const ReferenceMetrics& r) {
+  reports::Table table;
+  table.title = "Errors against the reference";
+  table.note = fmt::format(
+      "Over {} epochs. Of Gaussian errors with the right covariance 99.7 % lie inside 3 sigma.",
+      r.samples);
+  table.header = {"", "RMS"};
+  table.rows = {{"horizontal", fmt::format("{:.4f} m", r.horizontal_rmse)},
+                {"vertical", fmt::format("{:.4f} m", r.vertical_rmse)},
+                {"roll", degrees_or_dash(r.roll_rmse)},
+                {"pitch", degrees_or_dash(r.pitch_rmse)},
+                {"heading", degrees_or_dash(r.heading_rmse)}};
+  for (const auto& [name, inside] : {std::pair{"position inside 3 sigma", &r.position_inside},
+                                     std::pair{"velocity inside 3 sigma", &r.velocity_inside},
+                                     std::pair{"attitude inside 3 sigma", &r.attitude_inside}}) {
+    if (inside->samples > 0) table.rows.push_back({name, percent(inside->fraction.col(2).mean())});
+  }
+  return table;
+}
+
+}  // namespace
+
+std::string metrics_json(const RunResult& result) {
+  const RunMetrics& m = result.metrics;
+  Json json{{"method", result.method},
+            {"epochs", m.epochs},
+            {"duration_s", m.duration_s},
+            {"gnss", gnss_json(m.gnss)}};
+  if (m.reference) json["reference"] = reference_json(*m.reference);
+  json["statistics_from_s"] = result.statistics_from_s;
+  json["cpu_s"] = result.resources.cpu_s;
+  json["wall_s"] = result.resources.wall_s;
+  json["peak_rss_mb"] = result.resources.peak_rss_mb;
+  json["log"] = result.log;
+  json["version"] = kVersion;
+  return json.dump(2) + "\n";
+}
+
+std::vector<std::string> metrics_lines(const RunResult& result) {
+  const RunMetrics& m = result.metrics;
+  std::vector<std::string> lines{
+      fmt::format("method     {}, {} epochs over {:.1f} s", result.method, m.epochs, m.duration_s),
+      fmt::format("GNSS       {} fixes used, {} rejected; innovation RMS north / east / down {}",
+                  m.gnss.used, m.gnss.rejected, centimetres(m.gnss.innovation_rms_n))};
+  if (m.reference) {
+    lines.push_back(fmt::format("reference  RMS error horizontal {:.3f} m, vertical {:.3f} m{}",
+                                m.reference->horizontal_rmse, m.reference->vertical_rmse,
+                                attitude_text(*m.reference)));
+  }
+  lines.push_back(fmt::format("resources  {:.1f} s wall, {:.1f} s CPU, {:.0f} MB",
+                              result.resources.wall_s, result.resources.cpu_s,
+                              result.resources.peak_rss_mb));
+  return lines;
+}
+
+std::vector<reports::KeyNumber> key_numbers(const RunResult& result) {
+  const RunMetrics& m = result.metrics;
+  std::vector<reports::KeyNumber> numbers;
+  if (m.reference) {
+    numbers.push_back({"Horizontal error, RMS", fmt::format("{:.3f}", m.reference->horizontal_rmse),
+                       "m", "against the reference"});
+    numbers.push_back({"Vertical error, RMS", fmt::format("{:.3f}", m.reference->vertical_rmse),
+                       "m", "against the reference"});
+  }
+  const Eigen::Vector3d& innovation = m.gnss.innovation_rms_n;
+  numbers.push_back({"Innovation, horizontal RMS",
+                     fmt::format("{:.2f}", 100 * innovation.head<2>().norm()), "cm",
+                     "fix minus prediction"});
+  numbers.push_back({"Fixes used", fmt::format("{}", m.gnss.used), "",
+                     fmt::format("{} rejected", m.gnss.rejected)});
+  numbers.push_back(
+      {"Duration", fmt::format("{:.0f}", m.duration_s), "s", fmt::format("{} epochs", m.epochs)});
+  numbers.push_back(
+      {"Processing", fmt::format("{:.1f}", result.resources.wall_s), "s",
+       fmt::format("{:.0f} times faster than recorded", m.duration_s / result.resources.wall_s)});
+  return numbers;
+}
+
+std::vector<reports::Table> metrics_tables(const RunResult& result) {
+  std::vector<reports::Table> tables;
+  if (result.metrics.reference) tables.push_back(reference_table(*result.metrics.reference));
+  tables.push_back(gnss_table(result.metrics.gnss));
+  return tables;
+}
+
+}  // namespace foucault::app

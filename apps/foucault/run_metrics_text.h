@@ -1,0 +1,20 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "foucault/reports/report_page.h"
+#include "run_job.h"
+
+/// The metrics of a run, for programs, for the console and for the report.
+namespace foucault::app {
+
+/// metrics.json; numbers that do not exist are null.
+std::string metrics_json(const RunResult& result);
+
+std::vector<std::string> metrics_lines(const RunResult& result);
+
+std::vector<reports::KeyNumber> key_numbers(const RunResult& result);
+std::vector<reports::Table> metrics_tables(const RunResult& result);
+
+}  // namespace foucault::app

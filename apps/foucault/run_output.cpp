@@ -1,0 +1,63 @@
+#include "run_output.h"
+
+#include <fmt/format.h>
+
+#include <variant>
+
+#include "foucault/core/time.h"
+#include "units.h"
+
+namespace foucault::app {
+
+RunOutput::RunOutput(const std::filesystem::path& folder, const Mounting& mounting,
+                     const OutputOptions& options, reports::RunReport* report, Console& console)
+    : mounting_(mounting),
+      statistics_from_s_(options.statistics_from_s),
+      solution_(folder, mounting),
+      comparison_(mounting, [this](const Epoch& epoch,
+                                   const ReferenceError& error) { reference_error(epoch, error); }),
+      report_(report),
+      console_(console) {}
+
+void RunOutput::measurement(const Measurement& measurement) {
+  if (const auto* fix = std::get_if<GnssFix>(&measurement)) {
+    if (!metrics_) metrics_.emplace(mounting_, fix->t_ns + nanoseconds(statistics_from_s_));
+  } else if (const auto* reference = std::get_if<ReferencePose>(&measurement)) {
+    comparison_.add(*reference);
+  } else if (const auto* increment = std::get_if<ImuIncrement>(&measurement)) {
+    if (report_ != nullptr) report_->imu_stamp(increment->t_end_ns);
+  }
+}
+
+void RunOutput::epoch(const Epoch& epoch) {
+  solution_.epoch(epoch);
+  if (report_ != nullptr) report_->epoch(epoch);
+  if (metrics_) metrics_->epoch(epoch);
+  comparison_.add(epoch);
+}
+
+void RunOutput::fix(const FixResult& fix) {
+  if (report_ != nullptr) report_->fix(fix);
+  if (metrics_) metrics_->fix(fix);
+}
+
+void RunOutput::notice(const Notice& notice) {
+  if (report_ != nullptr) report_->notice(notice);
+  if (notice.kind == NoticeKind::aligned) {
+    console_.say(fmt::format("aligned    {}, {}", format_utc(notice.t_ns), notice.text));
+  } else {
+    console_.warn(fmt::format("{}: {}", format_utc(notice.t_ns), notice.text));
+  }
+}
+
+void RunOutput::reference_error(const Epoch& epoch, const ReferenceError& error) {
+  if (report_ != nullptr) report_->reference_error(error);
+  if (metrics_) metrics_->reference_error(epoch, error);
+}
+
+RunMetrics RunOutput::finish() {
+  solution_.finish();
+  return metrics_ ? metrics_->metrics() : RunMetrics{};
+}
+
+}  // namespace foucault::app

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+#include "console.h"
+#include "foucault/core/interfaces.h"
+#include "foucault/evaluation/reference_error.h"
+#include "foucault/evaluation/run_metrics.h"
+#include "foucault/reports/run_report.h"
+#include "settings.h"
+#include "solution_writer.h"
+
+namespace foucault::app {
+
+/// Where everything that comes out of a run goes: solution files, metrics, report, console.
+class RunOutput : public Sink {
+ public:
+  /// `report` may be null. It and the console must outlive this.
+  RunOutput(const std::filesystem::path& folder, const Mounting& mounting,
+            const OutputOptions& options, reports::RunReport* report, Console& console);
+
+  /// Every measurement, before the estimator gets it: references and stamps are taken from it.
+  void measurement(const Measurement& measurement);
+
+  void epoch(const Epoch& epoch) override;
+  void fix(const FixResult& fix) override;
+  void notice(const Notice& notice) override;
+
+  /// Completes the files.
+  RunMetrics finish();
+
+ private:
+  void reference_error(const Epoch& epoch, const ReferenceError& error);
+
+  Mounting mounting_;
+  double statistics_from_s_;
+  SolutionWriter solution_;
+  ReferenceComparison comparison_;
+  std::optional<RunMetricsCollector> metrics_;  ///< from the first fix on
+  reports::RunReport* report_;
+  Console& console_;
+};
+
+}  // namespace foucault::app

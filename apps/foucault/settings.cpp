@@ -1,0 +1,27 @@
+#include "settings.h"
+
+namespace foucault::app {
+
+void OutputOptions::fields(ConfigFields& f) {
+  f.text("rate", rate, {"epochs", "imu"},
+         "rows of the solution: at GNSS epochs, or at IMU samples too");
+  f.number("statistics_from_s", statistics_from_s, kNotNegative,
+           "statistics in metrics.json begin this long after the first fix");
+}
+
+EpochRate OutputOptions::epoch_rate() const {
+  return rate == "imu" ? EpochRate::imu : EpochRate::epochs;
+}
+
+void Settings::fields(ConfigFields& f) {
+  f.section("imu", imu, "noise of the IMU, and how its samples are to be read");
+  f.section("alignment", alignment, "initial attitude");
+  f.section("gnss", gnss, "which fixes are used, and how much they are trusted");
+  f.section("gaps", gaps, "holes in the IMU stream");
+  f.section("fgo", fgo, "factor graph: methods refined and rough");
+  f.section("ekf", ekf, "Kalman filter: method ekf");
+  f.section("rawlog", rawlog, "what is taken from a log with several sensors");
+  f.section("output", output, "what is written");
+}
+
+}  // namespace foucault::app

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <string>
+
+#include "foucault/core/config.h"
+#include "foucault/ekf/ekf.h"
+#include "foucault/fgo/fgo_options.h"
+#include "foucault/inertial/alignment.h"
+#include "foucault/inertial/imu_noise.h"
+#include "foucault/inertial/navigation_run.h"
+#include "foucault/rawlog/rawlog_source.h"
+
+namespace foucault::app {
+
+/// Section `output` of the configuration.
+class OutputOptions : public Configurable {
+ public:
+  std::string rate = "epochs";   ///< epochs | imu
+  double statistics_from_s = 0;  ///< after the first fix; metrics leave out what comes before
+
+  void fields(ConfigFields& f) override;
+  EpochRate epoch_rate() const;
+};
+
+/// The configuration of the methods; every key has a default that suits a car.
+class Settings : public Configurable {
+ public:
+  ImuOptions imu;
+  AlignmentOptions alignment;
+  GnssOptions gnss;
+  GapOptions gaps;
+  FgoOptions fgo;
+  EkfOptions ekf;
+  RawlogOptions rawlog;
+  OutputOptions output;
+
+  void fields(ConfigFields& f) override;
+};
+
+}  // namespace foucault::app

@@ -1,0 +1,113 @@
+#include "track_kml.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "foucault/core/state.h"
+#include "units.h"
+
+namespace foucault::app {
+namespace {
+
+constexpr int64_t kVertexInterval = 500'000'000;   // [ns]
+constexpr int64_t kMarkInterval = 60'000'000'000;  // [ns]
+constexpr int kMaxVertices = 10'000;               // viewers cut longer lines
+
+struct AccuracyClass {
+  const char* id;
+  double max_sigma;    // horizontal [m]
+  const char* colour;  // aabbggrr
+};
+
+constexpr std::array<AccuracyClass, 4> kClasses{
+    {{"below-0.1m", 0.1, "ff3ca03c"},
+     {"below-0.5m", 0.5, "ff1ec8e6"},
+     {"below-2m", 2.0, "ff1e82f0"},
+     {"above-2m", std::numeric_limits<double>::infinity(), "ff2828d2"}}};
+
+/// sqrt of the trace of the horizontal block [m].
+double horizontal_sigma(const Epoch& epoch) {
+  return std::sqrt(epoch.covariance(error_state::kPosition, error_state::kPosition) +
+                   epoch.covariance(error_state::kPosition + 1, error_state::kPosition + 1));
+}
+
+std::size_t class_of(double sigma) {
+  for (std::size_t i = 0; i < kClasses.size(); ++i) {
+    if (sigma < kClasses[i].max_sigma) return i;
+  }
+  return kClasses.size() - 1;
+}
+
+std::string coordinates(const Epoch& epoch) {
+  return fmt::format("{:.8f},{:.8f},{:.2f}\n", epoch.position.longitude * kDegrees,
+                     epoch.position.latitude * kDegrees, epoch.position.height);
+}
+
+std::string style(const AccuracyClass& accuracy) {
+  return fmt::format(
+      "<Style id=\"{}\"><LineStyle><color>{}</color><width>4</width></LineStyle>"
+      "</Style>\n",
+      accuracy.id, accuracy.colour);
+}
+
+}  // namespace
+
+TrackKml::TrackKml(const std::filesystem::path& path) : file_(path) {
+  file_.write(
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
+      "<kml xmlns=\"http://www.opengis.net/kml/2.2\">\n<Document><name>Foucault</name>\n");
+  for (const AccuracyClass& accuracy : kClasses) file_.write(style(accuracy));
+}
+
+void TrackKml::epoch(const Epoch& epoch) {
+  if (epoch.t_ns < next_vertex_ns_) return;
+  next_vertex_ns_ = epoch.t_ns + kVertexInterval;
+  const std::size_t accuracy_class = class_of(horizontal_sigma(epoch));
+  if (epoch.t_ns >= next_mark_ns_) {
+    end_line();
+    mark(epoch);
+  }
+  if (line_class_ != accuracy_class || vertices_ >= kMaxVertices) {
+    end_line();
+    begin_line(accuracy_class);
+  }
+  last_vertex_ = coordinates(epoch);
+  file_.write(last_vertex_);
+  ++vertices_;
+}
+
+void TrackKml::begin_line(std::size_t accuracy_class) {
+  file_.write(
+      fmt::format("<Placemark><styleUrl>#{}</styleUrl><LineString><tessellate>1</tessellate>"
+                  "<coordinates>\n{}",
+                  kClasses[accuracy_class].id, last_vertex_));
+  line_class_ = accuracy_class;
+  vertices_ = 1;
+}
+
+void TrackKml::end_line() {
+  if (!line_class_) return;
+  file_.write("</coordinates></LineString></Placemark>\n");
+  line_class_.reset();
+}
+
+void TrackKml::mark(const Epoch& epoch) {
+  next_mark_ns_ = epoch.t_ns + kMarkInterval;
+  file_.write(
+      fmt::format("<Placemark><name>{}</name><description>speed {:.1f} m/s, horizontal "
+                  "standard deviation {:.3f} m</description><Point><coordinates>{}"
+                  "</coordinates></Point></Placemark>\n",
+                  format_utc(epoch.t_ns), epoch.velocity_n.head<2>().norm(),
+                  horizontal_sigma(epoch), coordinates(epoch)));
+}
+
+void TrackKml::finish() {
+  end_line();
+  file_.write("</Document></kml>\n");
+  file_.close();
+}
+
+}  // namespace foucault::app

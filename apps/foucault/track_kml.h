@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "foucault/core/result.h"
+#include "text_file.h"
+
+namespace foucault::app {
+
+/// A track for Google Earth and other maps: lines coloured by the horizontal standard deviation of
+/// the position, a vertex every half second, and a mark with time, speed and accuracy every minute.
+/// Streams. Lines lie on the ground: the heights are ellipsoidal, and KML's are above the geoid.
+class TrackKml {
+ public:
+  explicit TrackKml(const std::filesystem::path& path);
+
+  void epoch(const Epoch& epoch);
+  void finish();
+
+ private:
+  void begin_line(std::size_t accuracy_class);
+  void end_line();
+  void mark(const Epoch& epoch);
+
+  TextFile file_;
+  std::optional<std::size_t> line_class_;  ///< of the line that is open
+  int vertices_ = 0;
+  std::string last_vertex_;
+  int64_t next_vertex_ns_ = 0;
+  int64_t next_mark_ns_ = 0;
+};
+
+}  // namespace foucault::app
