@@ -3,11 +3,13 @@
 #include <cmath>
 
 #include "foucault/geodesy/wgs84.h"
+#include "foucault/simulation/random.h"
 
 namespace foucault::simulation {
 namespace {
 
-constexpr double kTwoPi = 2 * 3.14159265358979323846;
+constexpr double kPi = 3.14159265358979323846;
+constexpr double kTwoPi = 2 * kPi;
 
 }  // namespace
 
@@ -33,6 +35,11 @@ void move_along_earth(Geodetic& position, double north, double east) {
   const double east_radius = wgs84::transverse_radius(position.latitude) + position.height;
   position.longitude += east / (east_radius * std::cos(position.latitude));
   position.latitude += north / north_radius;
+}
+
+double start_heading(const ScenarioOptions& options) {
+  if (options.heading_deg) return *options.heading_deg * kPi / 180;
+  return Draws(options.seed, RandomStream::heading).uniform(-kPi, kPi);
 }
 
 }  // namespace foucault::simulation

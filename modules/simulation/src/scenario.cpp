@@ -10,7 +10,6 @@
 #include "foucault/core/so3.h"
 #include "foucault/core/time.h"
 #include "foucault/geodesy/local_frame.h"
-#include "foucault/simulation/random.h"
 #include "road_vehicle.h"
 #include "rollout.h"
 
@@ -151,11 +150,6 @@ Trajectory make_trajectory(const ScenarioOptions& options) {
   const Scenario& scenario = find_scenario(options.name);
   const std::unique_ptr<Rollout> rollout = scenario.rollout(options);
   return follow(*rollout, options, scenario.knot_interval);
-}
-
-double simulation::start_heading(const ScenarioOptions& options) {
-  if (options.heading_deg) return *options.heading_deg * kDeg;
-  return Draws(options.seed, RandomStream::heading).uniform(-kPi, kPi);
 }
 
 }  // namespace foucault

@@ -1,0 +1,96 @@
+#include "foucault/simulation/gnss_simulator.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "foucault/geodesy/local_frame.h"
+
+namespace foucault {
+namespace {
+
+GnssFix fix_at(const Trajectory& truth, const ScenarioOptions& options, double t) {
+  GnssSimulator simulator(options);
+  return simulator.measure(truth.at(t), std::llround(t * 1e9), t);
+}
+
+TEST(GnssSimulator, AntennaIsOneLeverArmAway) {
+  ScenarioOptions options;
+  options.duration_s = 200;
+  options.gnss_noise = false;
+  options.lever_arm_m = {1.5, -0.7, -2.0};
+  options.mounting_deg = {10, -20, 130};
+  const Trajectory truth = make_trajectory(options);
+  for (double t = 0; t < 200; t += 3.3) {
+    const Motion motion = truth.at(t);
+    const GnssFix fix = fix_at(truth, options, t);
+    const Eigen::Vector3d arm_n = LocalFrame(motion.position).to_local(fix.antenna);
+    // Geodetic coordinates and back: a few nm.
+    EXPECT_LT((arm_n - motion.q_n_v * options.lever_arm_m).norm(), 2e-8);
+    EXPECT_LT((options.q_v_b() * fix.p_b_a - options.lever_arm_m).norm(), 1e-14);
+  }
+}
+
+TEST(GnssSimulator, VelocityIsTheAntennas) {
+  ScenarioOptions options;
+  options.duration_s = 200;
+  options.gnss_noise = false;
+  options.lever_arm_m = {1.5, -0.7, -2.0};
+  options.gnss_velocity_sigma_m_s = 0.03;
+  const Trajectory truth = make_trajectory(options);
+  const double h = 0.01;
+  for (double t = 1; t < 200; t += 3.3) {
+    const LocalFrame frame(truth.at(t).position);
+    const Eigen::Vector3d before = frame.to_local(fix_at(truth, options, t - h).antenna);
+    const Eigen::Vector3d after = frame.to_local(fix_at(truth, options, t + h).antenna);
+    const GnssFix fix = fix_at(truth, options, t);
+    ASSERT_TRUE(fix.velocity_n.has_value());
+    // Central difference: h^2/6 times a jerk of a few m/s^3.
+    EXPECT_LT(((after - before) / (2 * h) - *fix.velocity_n).norm(), 1e-4);
+    EXPECT_DOUBLE_EQ(fix.velocity_covariance(1, 1), 9e-4);
+  }
+}
+
+// 20000 draws: a variance is known to 1 %, a mean to 0.7 % of sigma.
+TEST(GnssSimulator, NoiseIsAsReported) {
+  ScenarioOptions options;
+  options.name = "static";
+  options.duration_s = 10;
+  options.gnss_sigma_m = {0.01, 0.02, 0.05};
+  options.gnss_velocity_sigma_m_s = 0.1;
+  options.lever_arm_m.setZero();
+  const Motion motion = make_trajectory(options).at(5);
+  const LocalFrame frame(motion.position);
+  GnssSimulator simulator(options);
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero(), square = Eigen::Vector3d::Zero();
+  double velocity_square = 0;
+  const int count = 20000;
+  for (int i = 0; i < count; ++i) {
+    const GnssFix fix = simulator.measure(motion, i, 5);
+    const Eigen::Vector3d scaled = frame.to_local(fix.antenna).cwiseQuotient(options.gnss_sigma_m);
+    mean += scaled / count;
+    square += scaled.cwiseAbs2() / count;
+    velocity_square += fix.velocity_n->squaredNorm() / 3 / count;
+    EXPECT_TRUE(fix.position_covariance.diagonal().cwiseSqrt().isApprox(options.gnss_sigma_m));
+  }
+  EXPECT_LT(mean.cwiseAbs().maxCoeff(), 0.03);
+  EXPECT_LT((square - Eigen::Vector3d::Ones()).cwiseAbs().maxCoeff(), 0.04);
+  EXPECT_NEAR(velocity_square, 0.01, 0.0004);
+}
+
+TEST(GnssSimulator, DegradesWithinItsWindow) {
+  ScenarioOptions options;
+  options.duration_s = 100;
+  options.gnss_degraded_start_s = 50;
+  options.gnss_degraded_length_s = 20;
+  const Trajectory truth = make_trajectory(options);
+  EXPECT_EQ(fix_at(truth, options, 49.9).quality, FixQuality::fixed_rtk);
+  EXPECT_EQ(fix_at(truth, options, 50).quality, FixQuality::float_rtk);
+  EXPECT_NEAR(fix_at(truth, options, 60).position_covariance(2, 2), 0.04, 1e-12);
+  EXPECT_NEAR(fix_at(truth, options, 70).position_covariance(2, 2), 0.0004, 1e-12);
+  EXPECT_FALSE(fix_at(truth, options, 60).velocity_n.has_value());
+}
+
+}  // namespace
+}  // namespace foucault
