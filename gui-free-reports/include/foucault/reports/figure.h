@@ -31,10 +31,11 @@ struct Series {
   Mark mark = Mark::line;
   Ink ink = Ink::blue;
   Shape shape = Shape::dot;
-  double size = 1.4;  ///< line width or marker diameter [pt]
+  double size = 1.2;  ///< line width or marker diameter [pt]
   double opacity = 1;
   bool dashed = false;
   bool in_legend = true;
+  bool value_labels = false;  ///< the number above each bar
   RangeRole range_role = RangeRole::full;
   std::vector<double> x;
   std::vector<double> y;         ///< not used by a band
@@ -91,14 +92,12 @@ struct Annotation {
   Ink ink = Ink::black;
 };
 
-/// Values on a grid of named places (the axes are of kind category). Not finite: not evaluated.
+/// Values on a grid of named places: both axes are of kind category, value [row * columns + column]
+/// belongs to places (column, row). Not finite: not evaluated. Coloured by the panel's colour axis.
 struct HeatMap {
   size_t columns = 0;
   size_t rows = 0;
-  std::vector<double> values;  ///< row by row, rows * columns
-  std::string label;
-  std::string unit;
-  bool log = false;  ///< colours follow the logarithm
+  std::vector<double> values;
 };
 
 enum class LegendPlace { figure, panel, none };
@@ -110,6 +109,7 @@ struct Panel {
   Axis y;
   bool equal_aspect = false;  ///< a unit is as long on x as on y
   bool scale_bar = false;     ///< a bar of round length where there is no data (equal_aspect)
+  Axis colour;                ///< of the heat map and of series with values
   double height_share = 1;    ///< relative to the other panels of the column
   LegendPlace legend = LegendPlace::figure;
   std::optional<HeatMap> heat_map;

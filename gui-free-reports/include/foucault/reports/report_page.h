@@ -20,7 +20,8 @@ struct KeyNumber {
 
 struct Table {
   std::string title;
-  std::string note;  ///< under the table; may be empty
+  std::string note;       ///< under the table; may be empty
+  bool of_words = false;  ///< cells are text, not numbers: set to the left
   std::vector<std::string> header;
   std::vector<std::vector<std::string>> rows;  ///< the first cell of a row names it
 };

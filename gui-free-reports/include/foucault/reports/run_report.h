@@ -21,8 +21,7 @@ struct RunLabels {
 
 /// Collects a run in bounded memory and writes its report: ground track, position, velocity,
 /// attitude, uncertainty, biases, errors where there is a reference, GNSS innovations, data health.
-/// Calls come in order of stamps within each kind; kinds may interleave in any way, but a
-/// reference error comes after the epoch of its stamp, whose covariance gives its bounds.
+/// Calls come in order of stamps within each kind; kinds may interleave in any way.
 class RunReport : public Sink {
  public:
   RunReport(RunLabels labels, const Mounting& mounting);
@@ -31,7 +30,8 @@ class RunReport : public Sink {
   void epoch(const Epoch& epoch) override;
   void fix(const FixResult& fix) override;
   void notice(const Notice& notice) override;
-  void reference_error(const ReferenceError& error);
+  /// `epoch` is the one the error belongs to; its covariance gives the bounds.
+  void reference_error(const Epoch& epoch, const ReferenceError& error);
 
   /// End of an IMU sample's interval, for the sampling statistics.
   void imu_stamp(int64_t t_ns);

@@ -1,0 +1,196 @@
+#include "run_data.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "foucault/core/so3.h"
+#include "foucault/core/time.h"
+#include "foucault/core/vehicle_attitude.h"
+
+namespace foucault::reports {
+namespace {
+
+constexpr double kDegrees = 180 / M_PI;
+constexpr double kDegreesPerHour = kDegrees * 3600;
+constexpr double kMilligal = 1e5;  // a m/s^2
+constexpr size_t kMostGaps = 64;
+constexpr size_t kMostNotices = 200;
+
+constexpr double kSemiMajorAxis = 6378137.0;       // WGS-84 [m]
+constexpr double kFlattening = 1 / 298.257223563;  // WGS-84
+
+Eigen::Vector3d sigma_of(const Matrix15d& covariance, int block) {
+  return covariance.diagonal().segment<3>(block).cwiseMax(0).cwiseSqrt();
+}
+
+Eigen::Vector3d sigma_of(const Eigen::Matrix3d& covariance) {
+  return covariance.diagonal().cwiseMax(0).cwiseSqrt();
+}
+
+Eigen::Vector3d degrees(const so3::Euler& euler) {
+  return kDegrees * Eigen::Vector3d(euler.roll, euler.pitch, euler.heading);
+}
+
+std::vector<double> six(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return {a.x(), a.y(), a.z(), b.x(), b.y(), b.z()};
+}
+
+}  // namespace
+
+void AxisStatistics::add(const Eigen::Vector3d& value, const Eigen::Vector3d& sigma) {
+  if (!value.allFinite()) return;
+  ++count_;
+  sum_of_squares_ += value.array().square();
+  inside_ += (value.array().abs() <= 3 * sigma.array()).cast<double>();
+}
+
+Eigen::Vector3d AxisStatistics::rms() const {
+  return (sum_of_squares_ / std::max<double>(1, static_cast<double>(count_))).sqrt();
+}
+
+Eigen::Vector3d AxisStatistics::inside_3_sigma() const {
+  return inside_ / std::max<double>(1, static_cast<double>(count_));
+}
+
+void Triad::add(double t, const Eigen::Vector3d& value, const Eigen::Vector3d& sigma) {
+  rows.add(t, six(value, sigma));
+  statistics.add(value, sigma);
+}
+
+std::optional<double> StepWatch::observe(double t) {
+  last_was_gap_ = false;
+  if (stamps_++ == 0) {
+    first_ = last_ = t;
+    return std::nullopt;
+  }
+  const double step = t - last_;
+  recent_[(stamps_ - 2) % kMemory] = step;
+  longest_ = std::max(longest_, step);
+  last_was_gap_ = step > std::max(least_gap_, 5 * median_step());
+  if (last_was_gap_) keep_gap({last_, t});
+  steps_.add(t, {step});
+  last_ = t;
+  return step;
+}
+
+double StepWatch::median_step() const {
+  std::array<double, kMemory> steps = recent_;
+  const size_t known = std::min(stamps_ - 1, kMemory);
+  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(known / 2);
+  std::nth_element(steps.begin(), middle, steps.begin() + static_cast<std::ptrdiff_t>(known));
+  return *middle;
+}
+
+void StepWatch::keep_gap(const Interval& gap) {
+  ++gap_count_;
+  gap_duration_ += gap.length();
+  gaps_.push_back(gap);
+  if (gaps_.size() <= kMostGaps) return;
+  gaps_.erase(std::min_element(gaps_.begin(), gaps_.end(), [](const auto& a, const auto& b) {
+    return a.length() < b.length();
+  }));
+}
+
+double StepWatch::rate() const {
+  const double covered = duration() - gap_duration_;
+  return covered > 0 ? static_cast<double>(stamps_ - 1 - gap_count_) / covered : 0;
+}
+
+std::vector<Interval> StepWatch::longest_gaps() const { return gaps_; }
+
+Eigen::Vector3d StartPlane::north_east_up(const Geodetic& place) const {
+  const double middle = (start_.latitude + place.latitude) / 2;
+  const double e2 = kFlattening * (2 - kFlattening);
+  const double w2 = 1 - e2 * std::sin(middle) * std::sin(middle);
+  const double meridian = kSemiMajorAxis * (1 - e2) / (w2 * std::sqrt(w2));
+  const double transverse = kSemiMajorAxis / std::sqrt(w2);
+  return {(meridian + start_.height) * (place.latitude - start_.latitude),
+          (transverse + start_.height) * std::cos(middle) *
+              so3::wrap(place.longitude - start_.longitude),
+          place.height - start_.height};
+}
+
+double RunData::seconds(int64_t t_ns) {
+  if (!start_ns_) start_ns_ = t_ns;
+  return seconds_between(*start_ns_, t_ns);
+}
+
+Eigen::Vector3d RunData::place(const Geodetic& geodetic) {
+  if (!plane_) plane_.emplace(geodetic);
+  return plane_->north_east_up(geodetic);
+}
+
+void RunData::mark_gap() {
+  track.add_gap();
+  for (Triad* triad : {&position, &velocity, &attitude, &gyro_bias, &accel_bias, &position_error,
+                       &velocity_error, &attitude_error}) {
+    triad->rows.add_gap();
+  }
+}
+
+void RunData::add(const Epoch& epoch) {
+  const double t = seconds(epoch.t_ns);
+  epoch_steps.observe(t);
+  if (epoch_steps.last_was_gap()) mark_gap();
+
+  const Eigen::Vector3d p = place(epoch.position);
+  track.add(t, {p.x(), p.y()});
+  position.add(t, p, sigma_of(epoch.covariance, error_state::kPosition));
+  velocity.add(t, epoch.velocity_n, sigma_of(epoch.covariance, error_state::kVelocity));
+  gyro_bias.add(t, kDegreesPerHour * epoch.bias.gyro,
+                kDegreesPerHour * sigma_of(epoch.covariance, error_state::kGyroBias));
+  accel_bias.add(t, kMilligal * epoch.bias.accel,
+                 kMilligal * sigma_of(epoch.covariance, error_state::kAccelBias));
+
+  const VehicleAttitude vehicle = vehicle_attitude(epoch, mounting_);
+  so3::Euler euler = vehicle.euler;
+  if (last_heading_) euler.heading = *last_heading_ + so3::wrap(euler.heading - *last_heading_);
+  last_heading_ = euler.heading;
+  attitude.add(t, degrees(euler), kDegrees * vehicle.sigma);
+}
+
+void RunData::add(const FixResult& fix) {
+  const double t = seconds(fix.t_ns);
+  const bool used = fix.verdict == FixVerdict::used;
+  ++qualities[fix.quality];
+  ++verdicts[fix.verdict];
+  fix_types.add(t, {static_cast<double>(fix.quality), used ? 0.0 : 1.0});
+  const Eigen::Vector3d p = place(fix.antenna);
+  const Eigen::Vector3d sigma = sigma_of(fix.innovation_covariance);
+  if (used) {
+    fix_steps.observe(t);
+    fix_places.add(t, {p.x(), p.y(), static_cast<double>(fix.quality)});
+    innovation.add(t, fix.innovation_n, sigma);
+    postfit.add(t, fix.postfit_n, sigma);
+  } else {
+    rejected_places.add(t, {p.x(), p.y()});
+    rejected_innovation.add(t, fix.innovation_n, sigma);
+  }
+}
+
+void RunData::add(const Notice& notice) {
+  seconds(notice.t_ns);
+  ++notices_seen;
+  if (notices.size() < kMostNotices) notices.push_back(notice);
+}
+
+void RunData::add(const Epoch& epoch, const ReferenceError& error) {
+  const double t = seconds(error.t_ns);
+  const Matrix15d& covariance = epoch.covariance;
+  position_error.add(t, error.position_n, sigma_of(covariance, error_state::kPosition));
+  if (error.velocity_n) {
+    velocity_error.add(t, *error.velocity_n, sigma_of(covariance, error_state::kVelocity));
+  }
+  if (error.euler) {
+    attitude_error.add(t, kDegrees * *error.euler,
+                       kDegrees * vehicle_attitude(epoch, mounting_).sigma);
+  }
+}
+
+void RunData::add_imu_stamp(int64_t t_ns) { imu_steps.observe(seconds(t_ns)); }
+
+void RunData::add_outage(int64_t begin_ns, int64_t end_ns) {
+  if (outages.size() < 1000) outages.push_back({seconds(begin_ns), seconds(end_ns)});
+}
+
+}  // namespace foucault::reports

@@ -1,0 +1,286 @@
+#include "foucault/reports/run_report.h"
+
+#include <fmt/format.h>
+
+#include <ctime>
+
+#include "foucault/core/time.h"
+#include "foucault/reports/ticks.h"
+#include "run_data.h"
+#include "run_figures.h"
+
+namespace foucault::reports {
+namespace {
+
+std::string utc_text(int64_t t_ns) {
+  const std::time_t seconds = static_cast<std::time_t>(t_ns / kNanosecondsPerSecond);
+  std::tm utc{};
+  gmtime_r(&seconds, &utc);
+  return fmt::format("{:04}-{:02}-{:02} {:02}:{:02}:{:02} UTC", utc.tm_year + 1900, utc.tm_mon + 1,
+                     utc.tm_mday, utc.tm_hour, utc.tm_min, utc.tm_sec);
+}
+
+std::string notice_name(NoticeKind kind) {
+  switch (kind) {
+    case NoticeKind::aligned:
+      return "aligned";
+    case NoticeKind::imu_gap:
+      return "IMU gap";
+    case NoticeKind::realigned:
+      return "aligned again";
+    case NoticeKind::fix_rejected:
+      return "fix rejected";
+    case NoticeKind::skipped:
+      return "skipped";
+  }
+  return {};
+}
+
+std::string verdict_name(FixVerdict verdict) {
+  switch (verdict) {
+    case FixVerdict::used:
+      return "used";
+    case FixVerdict::bad_sigma:
+      return "rejected: bad sigma";
+    case FixVerdict::gated:
+      return "rejected: too far from the prediction";
+    case FixVerdict::low_quality:
+      return "rejected: quality too low";
+    case FixVerdict::out_of_order:
+      return "rejected: out of order";
+  }
+  return {};
+}
+
+std::string joined_by_dots(const std::vector<std::string>& parts) {
+  std::string text;
+  for (const std::string& part : parts) {
+    if (part.empty()) continue;
+    text += (text.empty() ? "" : " · ") + part;
+  }
+  return text;
+}
+
+struct ErrorRow {
+  const char* quantity;
+  std::string unit;
+  const Triad* triad;
+  double factor = 1;
+};
+
+std::vector<std::string> error_row(const ErrorRow& row, const char* axis, Eigen::Index i) {
+  const AxisStatistics& statistics = row.triad->statistics;
+  return {fmt::format("{}, {}", row.quantity, axis),
+          fmt::format("{} {}", significant_text(statistics.rms()[i] * row.factor), row.unit),
+          fmt::format("{} %", number_text(100 * statistics.inside_3_sigma()[i], 1))};
+}
+
+Table error_table(const RunData& data) {
+  Table table;
+  table.title = "Estimate against reference";
+  table.header = {"Error", "RMS", "within 3σ"};
+  table.note = fmt::format("{} epochs compared.", data.position_error.statistics.count());
+  for (const ErrorRow& row : {ErrorRow{"Position", "m", &data.position_error},
+                              {"Velocity", "m/s", &data.velocity_error},
+                              {"Attitude", "°", &data.attitude_error}}) {
+    if (row.triad->empty()) continue;
+    const bool euler = row.triad == &data.attitude_error;
+    const std::array<const char*, 3> axes =
+        euler ? std::array{"roll", "pitch", "heading"} : std::array{"north", "east", "down"};
+    for (Eigen::Index i = 0; i < 3; ++i) {
+      table.rows.push_back(error_row(row, axes[static_cast<size_t>(i)], i));
+    }
+  }
+  return table;
+}
+
+Table fix_table(const RunData& data) {
+  Table table;
+  table.title = "GNSS fixes";
+  table.header = {"", "Count"};
+  for (const auto& [quality, count] : data.qualities) {
+    table.rows.push_back({quality_name(quality), std::to_string(count)});
+  }
+  for (const auto& [verdict, count] : data.verdicts) {
+    table.rows.push_back({verdict_name(verdict), std::to_string(count)});
+  }
+  return table;
+}
+
+Table innovation_table(const RunData& data) {
+  Table table;
+  table.title = "GNSS innovations and residuals";
+  table.header = {"", "Innovation RMS", "within 3σ", "Residual RMS"};
+  const Eigen::Vector3d rms = data.innovation.statistics.rms();
+  const Eigen::Vector3d inside = data.innovation.statistics.inside_3_sigma();
+  const Eigen::Vector3d after = data.postfit.statistics.rms();
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    const char* const axis = std::array{"North", "East", "Down"}[static_cast<size_t>(i)];
+    table.rows.push_back({axis, significant_text(rms[i]) + " m",
+                          number_text(100 * inside[i], 1) + " %",
+                          significant_text(after[i]) + " m"});
+  }
+  table.note = "All used fixes, those before the filter has settled included.";
+  return table;
+}
+
+std::vector<std::string> sampling_row(const char* name, const StepWatch& watch) {
+  return {name,
+          std::to_string(watch.stamps()),
+          significant_text(watch.rate(), 4) + " Hz",
+          significant_text(watch.longest()) + " s",
+          std::to_string(watch.gaps()),
+          significant_text(watch.gap_duration()) + " s"};
+}
+
+Table sampling_table(const RunData& data) {
+  Table table;
+  table.title = "Sampling";
+  table.header = {"", "Count", "Rate", "Longest interval", "Gaps", "Time in gaps"};
+  if (data.imu_steps.stamps() > 1) {
+    table.rows.push_back(sampling_row("IMU samples", data.imu_steps));
+  }
+  if (data.fix_steps.stamps() > 1) {
+    table.rows.push_back(sampling_row("Used GNSS fixes", data.fix_steps));
+  }
+  if (data.epoch_steps.stamps() > 1) {
+    table.rows.push_back(sampling_row("Epochs of the solution", data.epoch_steps));
+  }
+  table.note =
+      "A gap is longer than five usual intervals and than 0.2 s (IMU), 4 s (GNSS), 3 s (epochs).";
+  return table;
+}
+
+Table notice_table(const RunData& data, int64_t start_ns) {
+  Table table;
+  table.title = "What happened on the way";
+  table.of_words = true;
+  table.header = {"Time since start", "Event", "Detail"};
+  for (const Notice& notice : data.notices) {
+    table.rows.push_back({number_text(seconds_between(start_ns, notice.t_ns), 2) + " s",
+                          notice_name(notice.kind), notice.text});
+  }
+  if (data.notices_seen > data.notices.size()) {
+    table.note = fmt::format("{} more.", data.notices_seen - data.notices.size());
+  }
+  return table;
+}
+
+void add_if(const std::optional<Figure>& figure, Section& section) {
+  if (figure) section.figures.push_back(*figure);
+}
+
+bool has_content(const Section& section) {
+  return !section.tables.empty() || !section.figures.empty();
+}
+
+}  // namespace
+
+class RunReport::Collector {
+ public:
+  Collector(RunLabels run_labels, const Mounting& mounting)
+      : labels(std::move(run_labels)), data(mounting) {}
+
+  std::string subtitle() const {
+    return joined_by_dots({labels.recording, labels.method,
+                           data.start_ns() ? utc_text(*data.start_ns()) : std::string()});
+  }
+
+  Section overview() const {
+    Section section{"Overview", {}, tables, {}};
+    if (!data.position_error.empty()) section.tables.push_back(error_table(data));
+    if (!data.innovation.empty()) section.tables.push_back(innovation_table(data));
+    add_if(ground_track(data, subtitle()), section);
+    return section;
+  }
+
+  Section errors() const {
+    Section section{"Errors", {}, {}, {}};
+    add_if(position_error_figure(data, subtitle()), section);
+    add_if(velocity_error_figure(data, subtitle()), section);
+    add_if(attitude_error_figure(data, subtitle()), section);
+    return section;
+  }
+
+  Section gnss() const {
+    Section section{"GNSS", {}, {}, {}};
+    if (!data.verdicts.empty()) section.tables.push_back(fix_table(data));
+    add_if(innovation_figure(data, subtitle()), section);
+    add_if(postfit_figure(data, subtitle()), section);
+    return section;
+  }
+
+  Section solution() const {
+    Section section{"Solution", {}, {}, {}};
+    add_if(position_figure(data, subtitle()), section);
+    add_if(velocity_figure(data, subtitle()), section);
+    add_if(attitude_figure(data, subtitle()), section);
+    add_if(uncertainty_figure(data, subtitle()), section);
+    return section;
+  }
+
+  Section biases() const {
+    Section section{"Sensor biases", {}, {}, {}};
+    add_if(gyro_bias_figure(data, subtitle()), section);
+    add_if(accel_bias_figure(data, subtitle()), section);
+    return section;
+  }
+
+  Section health() const {
+    Section section{"Data health", {}, {sampling_table(data)}, {}};
+    if (section.tables.front().rows.empty()) section.tables.clear();
+    if (!data.notices.empty()) section.tables.push_back(notice_table(data, *data.start_ns()));
+    add_if(data_health_figure(data, subtitle()), section);
+    return section;
+  }
+
+  ReportPage page() const {
+    ReportPage page;
+    page.title = "Navigation report";
+    page.subtitle = subtitle();
+    page.key_numbers = key_numbers;
+    for (const Section& section : {overview(), errors(), gnss(), solution(), biases(), health()}) {
+      if (has_content(section)) page.sections.push_back(section);
+    }
+    if (!labels.command.empty()) page.listings.push_back({"Command", labels.command});
+    if (!labels.config.empty()) page.listings.push_back({"Configuration", labels.config});
+    page.footer = labels.version;
+    return page;
+  }
+
+  RunLabels labels;
+  RunData data;
+  std::vector<KeyNumber> key_numbers;
+  std::vector<Table> tables;
+};
+
+RunReport::RunReport(RunLabels labels, const Mounting& mounting)
+    : collector_(std::make_unique<Collector>(std::move(labels), mounting)) {}
+
+RunReport::~RunReport() = default;
+
+void RunReport::epoch(const Epoch& epoch) { collector_->data.add(epoch); }
+
+void RunReport::fix(const FixResult& fix) { collector_->data.add(fix); }
+
+void RunReport::notice(const Notice& notice) { collector_->data.add(notice); }
+
+void RunReport::reference_error(const Epoch& epoch, const ReferenceError& error) {
+  collector_->data.add(epoch, error);
+}
+
+void RunReport::imu_stamp(int64_t t_ns) { collector_->data.add_imu_stamp(t_ns); }
+
+void RunReport::outage(int64_t begin_ns, int64_t end_ns) {
+  collector_->data.add_outage(begin_ns, end_ns);
+}
+
+void RunReport::key_number(const KeyNumber& number) { collector_->key_numbers.push_back(number); }
+
+void RunReport::table(const Table& table) { collector_->tables.push_back(table); }
+
+ReportPage RunReport::page() const { return collector_->page(); }
+
+void RunReport::write(const std::string& folder) const { write_report(page(), folder); }
+
+}  // namespace foucault::reports
