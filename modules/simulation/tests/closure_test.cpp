@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <ostream>
 #include <string>
 
 #include "foucault/simulation/scenario.h"
@@ -21,6 +22,8 @@ struct Case {
   double latitude_deg, longitude_deg;
   double begin;  ///< [s]
 };
+
+void PrintTo(const Case& test, std::ostream* out) { *out << test.scenario; }
 
 Trajectory trip(const std::string& name, double latitude_deg, double longitude_deg) {
   ScenarioOptions options;

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <ostream>
 #include <random>
 #include <string>
 
@@ -42,6 +43,8 @@ struct Case {
   double latitude_deg, longitude_deg;
   double vibration_m_s2, vibration_deg;
 };
+
+void PrintTo(const Case& test, std::ostream* out) { *out << test.scenario; }
 
 class TrajectoryOf : public ::testing::TestWithParam<Case> {
  protected:
