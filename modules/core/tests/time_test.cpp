@@ -84,6 +84,7 @@ TEST(Time, NanosecondsRoundToNearest) {
   EXPECT_EQ(nanoseconds(6e-10), 1);
   EXPECT_EQ(nanoseconds(1646881782.5), 1646881782'500'000'000);
   EXPECT_EQ(seconds_between(5, 1'500'000'005), 1.5);
+  EXPECT_EQ(seconds_between(0, 60 * kSecond), 60);  // 60.00000000000001 by a product with 1e-9
 }
 
 TEST(Time, NanosecondsRefuseWhatDoesNotFit) {

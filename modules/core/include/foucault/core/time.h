@@ -12,7 +12,7 @@ constexpr int64_t kNanosecondsPerSecond = 1'000'000'000;
 
 /// end - begin [s].
 constexpr double seconds_between(int64_t begin_ns, int64_t end_ns) {
-  return static_cast<double>(end_ns - begin_ns) * 1e-9;
+  return static_cast<double>(end_ns - begin_ns) / 1e9;
 }
 
 /// Nearest stamp to `seconds`, a duration or a date [s].
@@ -20,7 +20,7 @@ constexpr double seconds_between(int64_t begin_ns, int64_t end_ns) {
 int64_t nanoseconds(double seconds);
 
 /// The stamp as seconds [s]; good to about 0.2 us for today's dates.
-constexpr double to_seconds(int64_t t_ns) { return static_cast<double>(t_ns) * 1e-9; }
+constexpr double to_seconds(int64_t t_ns) { return static_cast<double>(t_ns) / 1e9; }
 
 /// GPS time: full week count since 1980-01-06 and second of week, kept in nanoseconds.
 struct GpsTime {
