@@ -1,0 +1,101 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "foucault/core/result.h"
+#include "foucault/evaluation/outage.h"
+
+/// Drift: what the estimate errs by during an outage.
+namespace foucault {
+
+/// Error at one instant of an outage.
+struct DriftSample {
+  double since_begin_s = 0;
+  Eigen::Vector3d error_n = Eigen::Vector3d::Zero();  ///< estimate minus truth, NED [m]
+
+  double horizontal() const { return error_n.head<2>().norm(); }
+  double vertical() const { return std::abs(error_n.z()); }
+};
+
+/// Infinite where the estimate was not a number.
+struct DriftValue {
+  double horizontal = 0;  ///< [m]
+  double vertical = 0;    ///< absolute value [m]
+};
+
+struct OutageDrift {
+  Outage outage;
+  DriftValue maximum;  ///< horizontal and vertical need not be at the same instant
+  DriftValue end;      ///< of the last sample
+  /// At each of the asked times; none where the outage is shorter or nothing was sampled near.
+  std::vector<std::optional<DriftValue>> at_marks;
+  std::vector<DriftSample> samples;  ///< in order of time
+};
+
+/// Times after the beginning of an outage at which its drift is reported [s].
+const std::vector<double>& default_drift_marks_s();
+
+/// Drift at a time after the beginning, linear between the samples on both sides if they are at
+/// most 2 s apart.
+std::optional<DriftValue> drift_at(const std::vector<DriftSample>& samples, double since_begin_s);
+
+/// Maximum, end and marks of the samples; at least one sample.
+OutageDrift outage_drift(const Outage& outage, std::vector<DriftSample> samples,
+                         const std::vector<double>& marks_s);
+
+/// Position of the antenna by an epoch.
+Geodetic antenna_position(const Epoch& epoch, const Eigen::Vector3d& p_b_a);
+
+/// Collects the errors during outages.
+class DriftCollector {
+ public:
+  explicit DriftCollector(std::vector<double> marks_s = default_drift_marks_s());
+
+  /// In order of stamps.
+  void add(const Outage& outage, int64_t t_ns, const Eigen::Vector3d& error_n);
+
+  bool empty() const { return outages_.empty(); }
+
+  /// Outages that ended before `until_ns`, the end of the recording, and were sampled to within
+  /// 1 s or a tenth of their length of their end.
+  std::vector<OutageDrift> complete(int64_t until_ns) const;
+
+ private:
+  struct Samples {
+    Outage outage;
+    std::vector<DriftSample> samples;
+  };
+
+  std::vector<double> marks_s_;
+  std::map<int64_t, Samples> outages_;
+};
+
+/// Compares epochs with the withheld fix of the same stamp, at the antenna: the truth where there
+/// is no reference. Epochs come at any time after their fix, in order of stamps.
+class WithheldTruth {
+ public:
+  using Callback = std::function<void(const Outage&, int64_t t_ns, const Eigen::Vector3d& error_n)>;
+
+  explicit WithheldTruth(Callback callback);
+
+  void withheld(const Outage& outage, const GnssFix& fix);
+  void epoch(const Epoch& epoch);
+
+ private:
+  struct Truth {
+    Outage outage;
+    GnssFix fix;
+  };
+
+  Callback callback_;
+  std::deque<Truth> waiting_;
+};
+
+}  // namespace foucault

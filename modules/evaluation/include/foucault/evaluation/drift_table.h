@@ -1,0 +1,63 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "foucault/evaluation/drift.h"
+#include "foucault/evaluation/statistics.h"
+
+/// The paper's tables, and drifts as text.
+namespace foucault {
+
+/// Cells as they are shown, one header row.
+struct TextTable {
+  std::string title;
+  std::vector<std::string> header;
+  std::vector<std::vector<std::string>> rows;  ///< as long as the header
+};
+
+/// RFC 4180: cells with commas, quotes or line ends are quoted.
+std::string to_csv(const TextTable& table);
+/// GitHub's Markdown, title in bold above.
+std::string to_markdown(const TextTable& table);
+
+/// All outages of one IMU by one method, over all its recordings and shifts; the same outages in
+/// the same order for every method of an IMU.
+struct MethodDrifts {
+  std::string imu;
+  std::string method;
+  std::vector<double> horizontal_max;  ///< per outage [m]
+  std::vector<double> vertical_max;
+};
+
+/// "RMSEs of horizontal and vertical drifts in meters": a row an IMU, two columns a method; RMS of
+/// the per-outage maximum. Rows and columns in order of appearance; "-" where nothing was run.
+TextTable drift_rms_table(const std::vector<MethodDrifts>& drifts);
+
+/// "Horizontal-drift differences between `base` and `other`": a column an IMU; rows difference [m],
+/// percentage (other - base) / base, and the bootstrap interval of the percentage. Only IMUs for
+/// which both were run.
+TextTable drift_difference_table(const std::vector<MethodDrifts>& drifts, const std::string& base,
+                                 const std::string& other);
+
+/// Statistics over outages: a row an IMU and method; RMS, mean, median, 68 %, 95 %, maximum, each
+/// with its interval.
+TextTable drift_statistics_table(const std::vector<MethodDrifts>& drifts);
+
+/// One outage by one method, for drift.csv.
+struct DriftRecord {
+  std::string recording;
+  std::string imu;
+  std::string method;
+  double shift_s = 0;
+  OutageDrift drift;
+};
+
+/// A row an outage and method. Columns: recording, imu, method, shift_s, outage (from 1),
+/// begin_unix_s, length_s, max_horizontal_m, max_vertical_m, end_horizontal_m, end_vertical_m, and
+/// horizontal_<mark>s_m, vertical_<mark>s_m for each mark; empty where there is no value.
+TextTable drift_record_table(const std::vector<DriftRecord>& records,
+                             const std::vector<double>& marks_s);
+
+}  // namespace foucault

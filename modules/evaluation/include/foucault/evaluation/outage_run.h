@@ -1,0 +1,47 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "foucault/core/interfaces.h"
+#include "foucault/evaluation/drift.h"
+#include "foucault/evaluation/outage.h"
+#include "foucault/evaluation/reference_error.h"
+
+namespace foucault {
+
+/// What drifts are measured against.
+enum class DriftTruth { reference, withheld_fixes };
+
+struct OutageRunResult {
+  DriftTruth truth = DriftTruth::withheld_fixes;
+  std::vector<OutageDrift> drifts;  ///< complete outages only
+  double cpu_s = 0;                 ///< of this thread, reading included
+};
+
+struct OutageRunOptions {
+  std::vector<double> marks_s = default_drift_marks_s();
+  /// For an estimator that gives out at the end (a smoother), keep_s must span the recording.
+  ReferenceComparisonOptions reference;
+};
+
+/// Makes an estimator that gives out to the sink.
+using EstimatorFactory = std::function<std::unique_ptr<Estimator>(const Mounting&, Sink&)>;
+
+/// What else wants to see a run.
+class OutageRunObserver : public Sink {
+ public:
+  virtual void reference_error(const Epoch&, const ReferenceError&) {}
+  virtual void progress(double) {}
+};
+
+/// Runs one estimator over one recording with outages. Truth is the reference if it covers
+/// every outage that the withheld fixes cover, else these fixes, at the antenna.
+/// Throws what source and estimator throw.
+OutageRunResult run_with_outages(std::unique_ptr<Source> source, const OutageSchedule& schedule,
+                                 const EstimatorFactory& make_estimator,
+                                 const OutageRunOptions& options = {},
+                                 OutageRunObserver* observer = nullptr);
+
+}  // namespace foucault

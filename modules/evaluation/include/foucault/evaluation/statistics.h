@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+/// Statistics of drifts over outages. Samples are few, so each number has a bootstrap interval.
+namespace foucault {
+
+double root_mean_square(const std::vector<double>& values);
+double mean(const std::vector<double>& values);
+/// Quantile for p in [0, 1], linear between order statistics (type 7 of Hyndman and Fan 1996).
+double quantile(std::vector<double> values, double p);
+
+/// A number with the interval that covers it with the asked confidence.
+struct Estimate {
+  double value = 0;
+  double low = 0;
+  double high = 0;
+};
+
+/// Percentile bootstrap (Efron 1979). The same seed gives the same interval everywhere.
+struct BootstrapOptions {
+  int resamples = 2000;
+  double confidence = 0.95;
+  uint64_t seed = 42;
+};
+
+struct Summary {
+  int64_t count = 0;
+  Estimate rms, mean, median, p68, p95, max;
+};
+
+/// Throws std::invalid_argument if there are no values.
+Summary summarize(const std::vector<double>& values, const BootstrapOptions& options = {});
+
+/// How `other` does against `base` on the same outages.
+struct PairedComparison {
+  int64_t count = 0;
+  double base_rms = 0;
+  double other_rms = 0;
+  Estimate rms_difference;  ///< other - base; outages are resampled in pairs
+  Estimate relative;        ///< the same, divided by base
+  double share_larger = 0;  ///< of the outages in which other is larger; ties count half
+  /// Probability that an equally large difference of RMS (either sign) comes about if the two
+  /// names are swapped at random in each outage.
+  double p_value = 1;
+};
+
+/// Throws std::invalid_argument if the lengths differ or are zero.
+PairedComparison compare_paired(const std::vector<double>& base, const std::vector<double>& other,
+                                const BootstrapOptions& options = {});
+
+/// Quantile of the chi-square distribution, p in (0, 1), dof > 0.
+double chi_square_quantile(double p, double dof);
+
+struct Band {
+  double low = 0;
+  double high = 0;
+};
+
+/// Where the mean over `runs` independent NEES (or NIS) of `dof` components lies with the given
+/// probability if the covariance is right.
+Band mean_nees_band(int dof, int64_t runs, double probability = 0.95);
+
+}  // namespace foucault

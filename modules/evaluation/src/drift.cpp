@@ -1,0 +1,105 @@
+#include "foucault/evaluation/drift.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "foucault/core/time.h"
+#include "foucault/geodesy/local_frame.h"
+
+namespace foucault {
+namespace {
+
+constexpr double kLongestInterpolation = 2;  // [s]
+
+/// What is not a number is larger than any, so that a diverged estimate does not look good.
+double or_infinite(double value) {
+  return std::isnan(value) ? std::numeric_limits<double>::infinity() : value;
+}
+
+DriftValue value_of(const DriftSample& sample) {
+  return {or_infinite(sample.horizontal()), or_infinite(sample.vertical())};
+}
+
+bool sampled_to_the_end(const Outage& outage, const std::vector<DriftSample>& samples) {
+  const double length = seconds_between(outage.begin_ns, outage.end_ns);
+  return samples.back().since_begin_s >= length - std::max(1.0, 0.1 * length);
+}
+
+}  // namespace
+
+const std::vector<double>& default_drift_marks_s() {
+  static const std::vector<double> marks{10, 20, 30, 60};
+  return marks;
+}
+
+std::optional<DriftValue> drift_at(const std::vector<DriftSample>& samples, double since_begin_s) {
+  constexpr double kSame = 5e-3;  // as the schedule takes stamps
+  const auto after = std::find_if(samples.begin(), samples.end(), [&](const DriftSample& s) {
+    return s.since_begin_s >= since_begin_s - kSame;
+  });
+  if (after == samples.end()) return std::nullopt;
+  if (after->since_begin_s <= since_begin_s + kSame) return value_of(*after);
+  if (after == samples.begin()) return std::nullopt;
+  const DriftSample& before = *(after - 1);
+  const double interval = after->since_begin_s - before.since_begin_s;
+  if (interval > kLongestInterpolation) return std::nullopt;
+  const double s = (since_begin_s - before.since_begin_s) / interval;
+  const Eigen::Vector3d error_n = (1 - s) * before.error_n + s * after->error_n;
+  return value_of({since_begin_s, error_n});
+}
+
+OutageDrift outage_drift(const Outage& outage, std::vector<DriftSample> samples,
+                         const std::vector<double>& marks_s) {
+  OutageDrift drift;
+  drift.outage = outage;
+  for (const DriftSample& sample : samples) {
+    const DriftValue value = value_of(sample);
+    drift.maximum.horizontal = std::max(drift.maximum.horizontal, value.horizontal);
+    drift.maximum.vertical = std::max(drift.maximum.vertical, value.vertical);
+  }
+  drift.end = value_of(samples.back());
+  for (const double mark_s : marks_s) drift.at_marks.push_back(drift_at(samples, mark_s));
+  drift.samples = std::move(samples);
+  return drift;
+}
+
+Geodetic antenna_position(const Epoch& epoch, const Eigen::Vector3d& p_b_a) {
+  return LocalFrame(epoch.position).to_geodetic(epoch.q_n_b * p_b_a);
+}
+
+DriftCollector::DriftCollector(std::vector<double> marks_s) : marks_s_(std::move(marks_s)) {}
+
+void DriftCollector::add(const Outage& outage, int64_t t_ns, const Eigen::Vector3d& error_n) {
+  Samples& samples = outages_.try_emplace(outage.index, Samples{outage, {}}).first->second;
+  samples.samples.push_back({seconds_between(outage.begin_ns, t_ns), error_n});
+}
+
+std::vector<OutageDrift> DriftCollector::complete(int64_t until_ns) const {
+  constexpr int64_t kSameNs = 5'000'000;
+  std::vector<OutageDrift> drifts;
+  for (const auto& [index, samples] : outages_) {
+    if (samples.outage.end_ns > until_ns + kSameNs) continue;
+    if (!sampled_to_the_end(samples.outage, samples.samples)) continue;
+    drifts.push_back(outage_drift(samples.outage, samples.samples, marks_s_));
+  }
+  return drifts;
+}
+
+WithheldTruth::WithheldTruth(Callback callback) : callback_(std::move(callback)) {}
+
+void WithheldTruth::withheld(const Outage& outage, const GnssFix& fix) {
+  waiting_.push_back({outage, fix});
+}
+
+void WithheldTruth::epoch(const Epoch& epoch) {
+  while (!waiting_.empty() && waiting_.front().fix.t_ns < epoch.t_ns) waiting_.pop_front();
+  if (waiting_.empty() || waiting_.front().fix.t_ns != epoch.t_ns) return;
+  const Truth& truth = waiting_.front();
+  const Geodetic antenna = antenna_position(epoch, truth.fix.p_b_a);
+  callback_(truth.outage, epoch.t_ns, ned_offset(truth.fix.antenna, antenna));
+  waiting_.pop_front();
+}
+
+}  // namespace foucault

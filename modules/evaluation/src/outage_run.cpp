@@ -1,0 +1,97 @@
+#include "foucault/evaluation/outage_run.h"
+
+#include <ctime>
+#include <utility>
+
+namespace foucault {
+namespace {
+
+double thread_cpu_s() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + static_cast<double>(now.tv_nsec) * 1e-9;
+}
+
+/// Takes the epochs of a run and measures them against both truths.
+class DriftMeter : public Sink {
+ public:
+  DriftMeter(std::unique_ptr<Source> source, const OutageSchedule& schedule,
+             const OutageRunOptions& options, OutageRunObserver* observer)
+      : observer_(observer),
+        by_reference_(options.marks_s),
+        by_fixes_(options.marks_s),
+        withheld_([this](const Outage& outage, int64_t t_ns, const Eigen::Vector3d& error_n) {
+          by_fixes_.add(outage, t_ns, error_n);
+        }),
+        source_(
+            std::move(source), schedule,
+            [this](const Outage& outage, const GnssFix& fix) { withheld_.withheld(outage, fix); }),
+        comparison_(
+            source_.mounting(),
+            [this](const Epoch& epoch, const ReferenceError& error) {
+              reference_error(epoch, error);
+            },
+            options.reference) {}
+
+  OutageSource& source() { return source_; }
+
+  void reference(const ReferencePose& pose) { comparison_.add(pose); }
+
+  void epoch(const Epoch& epoch) override {
+    if (observer_) observer_->epoch(epoch);
+    withheld_.epoch(epoch);
+    comparison_.add(epoch);
+  }
+  void fix(const FixResult& fix) override {
+    if (observer_) observer_->fix(fix);
+  }
+  void notice(const Notice& notice) override {
+    if (observer_) observer_->notice(notice);
+  }
+
+  OutageRunResult result() const {
+    const int64_t until_ns = source_.last_fix_ns().value_or(0);
+    const std::vector<OutageDrift> by_reference = by_reference_.complete(until_ns);
+    const std::vector<OutageDrift> by_fixes = by_fixes_.complete(until_ns);
+    const bool use_reference = !by_reference.empty() && by_reference.size() >= by_fixes.size();
+    OutageRunResult result;
+    result.truth = use_reference ? DriftTruth::reference : DriftTruth::withheld_fixes;
+    result.drifts = use_reference ? by_reference : by_fixes;
+    return result;
+  }
+
+ private:
+  void reference_error(const Epoch& epoch, const ReferenceError& error) {
+    if (observer_) observer_->reference_error(epoch, error);
+    const std::optional<Outage> outage = source_.outage_at(epoch.t_ns);
+    if (outage) by_reference_.add(*outage, epoch.t_ns, error.position_n);
+  }
+
+  OutageRunObserver* observer_;
+  DriftCollector by_reference_;
+  DriftCollector by_fixes_;
+  WithheldTruth withheld_;
+  OutageSource source_;
+  ReferenceComparison comparison_;
+};
+
+}  // namespace
+
+OutageRunResult run_with_outages(std::unique_ptr<Source> source, const OutageSchedule& schedule,
+                                 const EstimatorFactory& make_estimator,
+                                 const OutageRunOptions& options, OutageRunObserver* observer) {
+  const double cpu_before_s = thread_cpu_s();
+  DriftMeter meter(std::move(source), schedule, options, observer);
+  const std::unique_ptr<Estimator> estimator = make_estimator(meter.source().mounting(), meter);
+  while (const std::optional<Measurement> measurement = meter.source().next()) {
+    if (const auto* pose = std::get_if<ReferencePose>(&*measurement)) meter.reference(*pose);
+    estimator->process(*measurement);
+    if (observer) observer->progress(meter.source().progress());
+  }
+  estimator->finish();
+  OutageRunResult result = meter.result();
+  result.cpu_s = thread_cpu_s() - cpu_before_s;
+  return result;
+}
+
+}  // namespace foucault

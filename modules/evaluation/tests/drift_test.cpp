@@ -1,0 +1,115 @@
+#include "foucault/evaluation/drift.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "foucault/core/so3.h"
+#include "foucault/core/time.h"
+#include "foucault/geodesy/local_frame.h"
+
+namespace foucault {
+namespace {
+
+constexpr int64_t kBegin = 1'600'000'000'000'000'000;
+const Outage kOutage{3, kBegin, kBegin + 60 * kNanosecondsPerSecond};
+const Geodetic kHome{0.84, 0.2, 500};
+
+int64_t after_begin(double seconds) { return kBegin + nanoseconds(seconds); }
+
+TEST(Drift, MaximumEndAndMarks) {
+  const OutageDrift d =
+      outage_drift(kOutage, {{1, {3, 4, 1}}, {10, {6, 8, -7}}, {11, {0, 1, 0}}, {21, {0, 2, 2}}},
+                   {5, 10, 10.5, 15, 60});
+  EXPECT_EQ(d.maximum.horizontal, 10);
+  EXPECT_EQ(d.maximum.vertical, 7);
+  EXPECT_EQ(d.end.horizontal, 2);
+  EXPECT_EQ(d.end.vertical, 2);
+  ASSERT_EQ(d.at_marks.size(), 5u);
+  EXPECT_FALSE(d.at_marks[0]);  // 1 s and 10 s are too far apart
+  EXPECT_EQ(d.at_marks[1]->horizontal, 10);
+  EXPECT_EQ(d.at_marks[1]->vertical, 7);
+  EXPECT_NEAR(d.at_marks[2]->horizontal, std::hypot(3, 4.5), 1e-14);
+  EXPECT_NEAR(d.at_marks[2]->vertical, 3.5, 1e-14);
+  EXPECT_FALSE(d.at_marks[3]);
+  EXPECT_FALSE(d.at_marks[4]);  // after the last sample
+}
+
+TEST(Drift, MarkBeforeTheFirstSampleHasNoValue) {
+  EXPECT_FALSE(drift_at({{5, {1, 0, 0}}}, 4));
+  EXPECT_TRUE(drift_at({{5, {1, 0, 0}}}, 5.001));
+  EXPECT_FALSE(drift_at({}, 5));
+}
+
+TEST(Drift, NotANumberIsInfinite) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const OutageDrift d =
+      outage_drift(kOutage, {{1, {1, 1, 1}}, {2, {nan, 0, 0}}, {3, {1, 1, 1}}}, {});
+  EXPECT_TRUE(std::isinf(d.maximum.horizontal));
+  EXPECT_EQ(d.maximum.vertical, 1);
+}
+
+TEST(DriftCollector, GroupsByOutage) {
+  DriftCollector collector;
+  EXPECT_TRUE(collector.empty());
+  const Outage next{4, kBegin + 150 * kNanosecondsPerSecond, kBegin + 210 * kNanosecondsPerSecond};
+  for (int t = 1; t <= 60; ++t) collector.add(kOutage, after_begin(t), {0.01 * t * t, 0, 0.1 * t});
+  for (int t = 1; t <= 60; ++t) collector.add(next, after_begin(150 + t), {0, 1.0 * t, 0});
+  const std::vector<OutageDrift> drifts = collector.complete(after_begin(300));
+  ASSERT_EQ(drifts.size(), 2u);
+  EXPECT_EQ(drifts[0].outage.index, 3);
+  EXPECT_NEAR(drifts[0].maximum.horizontal, 36, 1e-12);
+  EXPECT_NEAR(drifts[0].maximum.vertical, 6, 1e-12);
+  EXPECT_NEAR(drifts[0].at_marks[1]->horizontal, 4, 1e-12);  // at 20 s
+  EXPECT_EQ(drifts[1].maximum.horizontal, 60);
+  EXPECT_EQ(drifts[1].samples.size(), 60u);
+}
+
+TEST(DriftCollector, LeavesOutIncompleteOutages) {
+  DriftCollector collector;
+  for (int t = 1; t <= 59; ++t) collector.add(kOutage, after_begin(t), {1, 0, 0});
+  EXPECT_EQ(collector.complete(after_begin(59)).size(), 0u);  // the recording ends within it
+  EXPECT_EQ(collector.complete(after_begin(60)).size(), 1u);
+
+  DriftCollector with_hole;
+  for (int t = 1; t <= 40; ++t) with_hole.add(kOutage, after_begin(t), {1, 0, 0});
+  EXPECT_EQ(with_hole.complete(after_begin(100)).size(), 0u);
+}
+
+TEST(AntennaPosition, AddsTheLeverArm) {
+  Epoch epoch;
+  epoch.position = kHome;
+  epoch.q_n_b = so3::from_euler({0, 0, M_PI / 2});  // forward is east, right is south
+  const Geodetic antenna = antenna_position(epoch, {1, 2, -3});
+  // The horizon's scale at 3 m more height: 2.2 m * 3 m / R.
+  EXPECT_LT((ned_offset(kHome, antenna) - Eigen::Vector3d(-2, 1, -3)).norm(), 2e-6);
+}
+
+TEST(WithheldTruth, ComparesAtTheAntenna) {
+  std::vector<Eigen::Vector3d> errors;
+  WithheldTruth truth([&](const Outage& outage, int64_t t_ns, const Eigen::Vector3d& error_n) {
+    EXPECT_EQ(outage.index, kOutage.index);
+    EXPECT_EQ(t_ns, after_begin(2));
+    errors.push_back(error_n);
+  });
+  for (int t = 1; t <= 3; ++t) {
+    GnssFix fix;
+    fix.t_ns = after_begin(t);
+    fix.p_b_a = {0, 0, -2};
+    fix.antenna = kHome;
+    truth.withheld(kOutage, fix);
+  }
+  Epoch epoch;  // 2 m below the antenna, and off by (0.3, -0.4, 0.1)
+  epoch.position = LocalFrame(kHome).to_geodetic({0.3, -0.4, 2.1});
+  for (const double t : {0.5, 1.5, 2.0, 2.5}) {
+    epoch.t_ns = after_begin(t);
+    truth.epoch(epoch);
+  }
+  ASSERT_EQ(errors.size(), 1u);
+  EXPECT_LT((errors[0] - Eigen::Vector3d(0.3, -0.4, 0.1)).norm(), 1e-6);
+}
+
+}  // namespace
+}  // namespace foucault
