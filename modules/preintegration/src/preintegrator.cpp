@@ -24,8 +24,6 @@ Matrix3d cross(const Vector3d& v, const Matrix3d& M) {
 /// and (18): rates linear in time give the 1/12 terms times 2 h2^2 / (h1 (h1 + h2)).
 double previous_weight(double h1, double h2) { return 2 * h2 * h2 / (h1 * (h1 + h2)); }
 
-void add_to_diagonal(Matrix3d& M, double value) { M.diagonal().array() += value; }
-
 }  // namespace
 
 Preintegrator::Blocks::Blocks() {
@@ -87,12 +85,22 @@ void Preintegrator::propagate_jacobians(const Matrix3d& C, const Matrix3d& D, co
   m_.J_dq_bg -= D;
 }
 
+/// Half of a sample's noise, W h.
+void Preintegrator::add_noise(double h, double q_g, double q_a) {
+  cov_.ee.diagonal().array() += h * q_g;
+  cov_.vv.diagonal().array() += h * q_a;
+  cov_.gg += h * noise_.gyro_bias_power();
+  cov_.aa += h * noise_.accel_bias_power();
+}
+
 /// Phi of one sample, the exact derivative of add():
 ///   eps' = eps - D bg
 ///   v'   = v + w,           w = -[y x] (eps - dt/2 C bg) - D ba
 ///   p'   = p + dt (v + w/2)
 ///   bg'  = decay bg,  ba' = decay ba
-/// and Q = dt/2 (Phi W + W Phi^T), W = diag(0, q_a, q_g, q_bg, q_ba). (40), (42), (43)
+/// and S' = Phi (S + dt/2 W) Phi^T + dt/2 W, W = diag(0, q_a, q_g, q_bg, q_ba): the trapezoid of
+/// (42) with its term of second order, (Phi - I) W (Phi - I)^T dt/2, kept. Without that term a
+/// single sample would have a covariance that is not positive. (40), (42), (43)
 void Preintegrator::propagate_covariance(const ImuIncrement& increment, const Matrix3d& C,
                                          const Matrix3d& D, const Vector3d& y, double dt) {
   if (dt != bias_decay_dt_) {
@@ -104,10 +112,9 @@ void Preintegrator::propagate_covariance(const ImuIncrement& increment, const Ma
       std::pow(noise_.gyro_noise_density, 2) + std::pow(increment.extra_gyro_noise_density, 2);
   const double q_a =
       std::pow(noise_.accel_noise_density, 2) + std::pow(increment.extra_accel_noise_density, 2);
-  const double q_bg = noise_.gyro_bias_power();
-  const double q_ba = noise_.accel_bias_power();
   const double h = 0.5 * dt;
   Blocks& s = cov_;
+  add_noise(h, q_g, q_a);
 
   const Matrix3d B = cross(y, h * C);  // d w / d bg
 
@@ -149,20 +156,7 @@ void Preintegrator::propagate_covariance(const ImuIncrement& increment, const Ma
   s.gg *= e * e;
   s.aa *= e * e;
 
-  // Q
-  const Matrix3d skew_y = so3::skew(y);
-  add_to_diagonal(s.vv, dt * q_a);
-  add_to_diagonal(s.pv, h * dt * q_a);
-  s.ve -= (h * q_g) * skew_y;
-  s.pe -= (h * h * q_g) * skew_y;
-  add_to_diagonal(s.ee, dt * q_g);
-  s.eg -= (h * q_bg) * D;
-  s.vg += (h * q_bg) * B;
-  s.pg += (h * h * q_bg) * B;
-  s.va -= (h * q_ba) * D;
-  s.pa -= (h * h * q_ba) * D;
-  s.gg += dt * e * q_bg;
-  s.aa += dt * e * q_ba;
+  add_noise(h, q_g, q_a);
 }
 
 Preintegration Preintegrator::result() const {

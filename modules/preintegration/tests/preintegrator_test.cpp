@@ -65,12 +65,8 @@ class DensePreintegrator {
     W.segment<3>(kAttitude).setConstant(std::pow(noise_.gyro_noise_density, 2));
     W.segment<3>(kGyroBias).setConstant(noise_.gyro_bias_power());
     W.segment<3>(kAccelBias).setConstant(noise_.accel_bias_power());
-    // (42) is stated for the attitude error at the beginning; G turns it into b(t_m).
-    Matrix15d turn = Matrix15d::Identity();
-    turn.block<3, 3>(kAttitude, kAttitude) = C_next.transpose() * C;
-    const Matrix15d W_end = W.asDiagonal();
-    const Matrix15d half = phi * turn.transpose() * W_end;
-    covariance = phi * covariance * phi.transpose() + 0.5 * dt * (half + half.transpose());
+    const Matrix15d half = 0.5 * dt * Matrix15d(W.asDiagonal());
+    covariance = phi * (covariance + half) * phi.transpose() + half;
     before_ = inc;
   }
 
@@ -168,6 +164,14 @@ TEST(Preintegrator, CovarianceMatchesMonteCarlo) {
   // A sample covariance of N runs scatters by 1/sqrt(N) = 1.6 % off the diagonal, 2.2 % on it;
   // four sigma. Signs matter: a wrong one on any correlated block fails by far more.
   EXPECT_LT(normalized_difference(sample, truth.covariance), 4 * std::sqrt(2.0 / kRuns));
+}
+
+TEST(Preintegrator, ASingleSampleHasAPositiveCovariance) {
+  const ClosedFormMotion motion(wuhan_earth());
+  const Matrix15d P = preintegrate(motion.increments(3, 3.005, 200), loud_noise()).covariance;
+  EXPECT_EQ(Eigen::LLT<Matrix15d>(P).info(), Eigen::Success);
+  // White noise over one interval: dt^3/2 by the trapezoid, dt^3/3 exactly.
+  EXPECT_NEAR(P(kPosition, kPosition), 9e-4 * std::pow(0.005, 3) / 2, 1e-12);
 }
 
 TEST(Preintegrator, BiasJacobiansAreDerivatives) {

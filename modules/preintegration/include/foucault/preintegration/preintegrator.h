@@ -49,7 +49,7 @@ struct Preintegration {
 /// The attitude error is kept in b_i, eps = C e_theta, in which (35) becomes
 ///     eps' = -C (bg + n_g),   v' = -[a x] eps - C (ba + n_a),   p' = v:
 /// only the skew of the velocity increment and C itself remain of the 15x15 products.
-/// Noise is (42), the paper's trapezoid; biases decay as Gauss-Markov in the covariance.
+/// Noise by the trapezoid rule, as (42); biases decay as Gauss-Markov in the covariance.
 class Preintegrator {
  public:
   /// `previous`: the increment before the first, for coning and sculling.
@@ -75,6 +75,8 @@ class Preintegrator {
                            const Eigen::Vector3d& y, double dt);
   void propagate_covariance(const ImuIncrement& increment, const Eigen::Matrix3d& C,
                             const Eigen::Matrix3d& D, const Eigen::Vector3d& y, double dt);
+
+  void add_noise(double h, double q_g, double q_a);
 
   /// Blocks of the covariance that are not zero; e = eps, g = gyro bias, a = accel bias.
   struct Blocks {
