@@ -10,13 +10,13 @@ namespace foucault {
 /// Error model of an IMU, paper (31)-(32): white noise, and biases that are first-order
 /// Gauss-Markov processes about an unknown turn-on value.
 struct ImuNoise {
-  double gyro_noise_density = 0;    ///< [rad/s/sqrt(Hz)]
-  double accel_noise_density = 0;   ///< [m/s^2/sqrt(Hz)]
-  double gyro_bias_sigma = 0;       ///< steady state, 1 sigma [rad/s]
-  double accel_bias_sigma = 0;      ///< [m/s^2]
-  double bias_tau = 3600;           ///< correlation time [s]
-  double gyro_turn_on_sigma = 0;    ///< [rad/s]
-  double accel_turn_on_sigma = 0;   ///< [m/s^2]
+  double gyro_noise_density = 0;   ///< [rad/s/sqrt(Hz)]
+  double accel_noise_density = 0;  ///< [m/s^2/sqrt(Hz)]
+  double gyro_bias_sigma = 0;      ///< steady state, 1 sigma [rad/s]
+  double accel_bias_sigma = 0;     ///< [m/s^2]
+  double bias_tau = 3600;          ///< correlation time [s]
+  double gyro_turn_on_sigma = 0;   ///< [rad/s]
+  double accel_turn_on_sigma = 0;  ///< [m/s^2]
 
   /// Power of the driving noise, q = 2 sigma^2 / tau [(rad/s)^2/s], [(m/s^2)^2/s].
   double gyro_bias_power() const { return 2 * gyro_bias_sigma * gyro_bias_sigma / bias_tau; }

@@ -8,7 +8,7 @@
 namespace foucault {
 
 struct Innovation {
-  Eigen::Vector3d value_n = Eigen::Vector3d::Zero();       ///< fix minus prediction, NED [m]
+  Eigen::Vector3d value_n = Eigen::Vector3d::Zero();         ///< fix minus prediction, NED [m]
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();  ///< of value_n, fix noise included
 };
 

@@ -1,0 +1,139 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+
+#include "foucault/core/config.h"
+#include "foucault/core/interfaces.h"
+#include "foucault/inertial/alignment.h"
+#include "foucault/inertial/navigator.h"
+
+namespace foucault {
+
+/// Section `gnss` of the configuration: which fixes are used, and how much they are trusted.
+class GnssOptions : public Configurable {
+ public:
+  std::string min_quality = "any";  ///< any | single | differential | ppp | float_rtk | fixed_rtk
+  double sigma_scale = 1;           ///< multiplies the sigmas of positions
+  double sigma_floor_m = 0;         ///< smallest sigma of a position, each axis
+  double gate_false_alarm = 1e-7;   ///< probability that a good fix is gated; 0: no gate
+  int64_t reinstate_after = 5;      ///< gated fixes in a row after which the gate opens
+
+  void fields(ConfigFields& f) override;
+};
+
+/// Section `gaps` of the configuration: how holes in the IMU stream are bridged. Over a hole the
+/// mean rates before it are taken on; the sigmas are those of what the vehicle does instead, as
+/// constant errors over the hole.
+class GapOptions : public Configurable {
+ public:
+  double max_gap_s = 10;        ///< longer: the alignment is done anew
+  double rate_sigma_deg_s = 6;  ///< error of the angular rate
+  double accel_sigma_m_s2 = 1;  ///< error of the specific force
+
+  void fields(ConfigFields& f) override;
+};
+
+enum class EpochRate { epochs, imu };
+
+struct NavigationRunOptions {
+  GnssOptions gnss;
+  GapOptions gaps;
+  double node_interval_s = 1;  ///< longest time between nodes, see Navigator::hold()
+  EpochRate rate = EpochRate::epochs;
+};
+
+/// The driver that all methods share: alignment, then a Navigator fed in order of time.
+/// - Increments are split at the stamps of fixes, requests and holds.
+/// - A hold comes when node_interval_s has passed since the last fix that was used (or hold).
+/// - Epochs go to the sink at the start, after every fix, hold and request, one a stamp; with
+///   EpochRate::imu also at the end of every increment.
+/// - Holes between increments are bridged (GapOptions); beyond max_gap_s the run aligns again.
+/// - Fixes are gated by the chi-square test of their innovation (3 degrees of freedom). After
+///   reinstate_after gated ones in a row the gate stays open until a fix passes it by itself.
+/// - Fixes up to the alignment's start stamp are not used again and have no FixResult.
+/// Memory is bounded: before alignment, at most what the Aligner may still start from is held.
+/// process() throws DataError for increments that overlap, go back or have no length.
+/// finish() throws DataError if there was no IMU, no usable fix, or no alignment: why, and what to
+/// do about it.
+class NavigationRun : public Estimator {
+ public:
+  NavigationRun(std::unique_ptr<Navigator> navigator, Aligner aligner,
+                const NavigationRunOptions& options, Sink& sink);
+
+  void process(const Measurement& measurement) override;
+  void finish() override;
+
+ private:
+  using Event = std::variant<GnssFix, EpochRequest>;
+
+  /// Means of the rates before now, for bridging a hole.
+  struct RecentRates {
+    Eigen::Vector3d gyro_b = Eigen::Vector3d::Zero();   ///< [rad/s]
+    Eigen::Vector3d accel_b = Eigen::Vector3d::Zero();  ///< [m/s^2]
+    double memory = 0;                                  ///< seconds that the means rest on
+    void add(const ImuIncrement& increment);
+  };
+
+  struct Counts {
+    int64_t increments = 0;
+    int64_t fixes = 0;
+    int64_t bad_sigma = 0;
+    int64_t bad_position = 0;
+    int64_t low_quality = 0;
+    std::optional<int64_t> first_bad_ns;
+    int64_t usable() const { return fixes - bad_sigma - bad_position - low_quality; }
+  };
+
+  void count(const Measurement& measurement);
+  void align(const Measurement& measurement);
+  void start(const Epoch& initial);
+  void drop_what_no_start_needs();
+
+  void take(const Measurement& measurement);
+  void take_event(const Event& event);
+  void take_increment(const ImuIncrement& increment);
+  bool bridge_gap(const ImuIncrement& next);
+  void realign(const ImuIncrement& next);
+  void advance(const ImuIncrement& increment);
+  std::optional<int64_t> next_stop(int64_t end_ns) const;
+  int64_t hold_due_ns() const;
+  void propagate(const ImuIncrement& increment);
+
+  void handle_stop();
+  void handle_fix(const GnssFix& fix);
+  FixVerdict judge(const GnssFix& fix, const Innovation& innovation);
+  void use(const GnssFix& fix, FixResult& result);
+  void remember_fix_time();
+  void hold();
+  void emit_epoch();
+  void notice_first_rejection(const GnssFix& fix, FixVerdict verdict);
+
+  void throw_if_nothing_usable() const;
+
+  std::unique_ptr<Navigator> navigator_;
+  Aligner aligner_;
+  NavigationRunOptions options_;
+  Sink& sink_;
+
+  bool aligned_ = false;
+  bool started_before_ = false;
+  int64_t time_ns_ = 0;
+  int64_t last_node_ns_ = 0;
+  std::optional<int64_t> last_epoch_ns_;
+  std::optional<int64_t> last_fix_ns_;
+  int64_t fix_interval_ns_ = 0;
+  std::optional<int64_t> last_increment_end_ns_;
+  RecentRates recent_;
+  std::deque<Measurement> held_;
+  std::deque<Event> pending_;
+  int64_t gated_in_a_row_ = 0;
+  bool noticed_bad_ = false;
+  Counts counts_;
+};
+
+}  // namespace foucault

@@ -1,0 +1,393 @@
+#include "foucault/inertial/alignment.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "course_finder.h"
+#include "foucault/core/error.h"
+#include "foucault/core/so3.h"
+#include "foucault/core/time.h"
+#include "foucault/geodesy/local_frame.h"
+#include "foucault/geodesy/wgs84.h"
+#include "initial_state.h"
+#include "moving_alignment.h"
+#include "rest_detector.h"
+
+namespace foucault {
+
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Quaterniond;
+using Eigen::Vector3d;
+
+constexpr double kDegree = 3.14159265358979323846 / 180;
+constexpr double kLargestHole = 0.1;      // [s]: over a longer one the attitude is lost
+constexpr double kRestSpeedSigma = 0.01;  // [m/s]
+/// With the heading given, a rest is complete at this length [s].
+constexpr double kEnoughRest = 10;
+constexpr double kGyroScaleSigma = 0.003;  // of the angle turned: scale factor, misalignment
+/// Measurements used in the alignment are used again in the run: their variances are doubled.
+constexpr double kReuse = 2;
+constexpr double kSpeedChecked = 30;  // [s] after rest that the inertial speed tells the direction
+constexpr double kReversing = -1.0;   // [m/s]
+
+std::optional<GivenAngle> given(const std::optional<double>& degrees, double sigma_degrees) {
+  if (!degrees) return std::nullopt;
+  return GivenAngle{*degrees * kDegree, sigma_degrees * kDegree};
+}
+
+GivenAngles given_angles(const AlignmentOptions& options) {
+  return {given(options.roll_deg, options.roll_sigma_deg),
+          given(options.pitch_deg, options.pitch_sigma_deg),
+          given(options.heading_deg, options.heading_sigma_deg)};
+}
+
+void require_all(const GivenAngles& angles) {
+  std::vector<std::string> missing;
+  if (!angles.roll) missing.emplace_back("roll_deg");
+  if (!angles.pitch) missing.emplace_back("pitch_deg");
+  if (!angles.heading) missing.emplace_back("heading_deg");
+  if (missing.empty()) return;
+  std::string list;
+  for (const std::string& key : missing) list += (list.empty() ? "" : ", ") + key;
+  throw UsageError("alignment.mode=given needs alignment." + list);
+}
+
+CourseLimits course_limits(const AlignmentOptions& options) {
+  return {options.min_speed_m_s, options.max_course_sigma_deg * kDegree,
+          options.max_turn_rate_deg_s * kDegree};
+}
+
+std::string describe(const Epoch& epoch, const Quaterniond& q_v_b) {
+  const so3::Euler euler = so3::to_euler(epoch.q_n_b * q_v_b.conjugate());
+  const Matrix3d by_b = so3::euler_jacobian(euler) * q_v_b.toRotationMatrix();
+  const Matrix3d attitude =
+      epoch.covariance.block<3, 3>(error_state::kAttitude, error_state::kAttitude);
+  const Vector3d sigma = (by_b * attitude * by_b.transpose()).diagonal().cwiseSqrt() / kDegree;
+  return fmt::format(
+      "roll {:.2f} deg (sigma {:.2f}), pitch {:.2f} ({:.2f}), heading {:.2f} ({:.2f})",
+      euler.roll / kDegree, sigma.x(), euler.pitch / kDegree, sigma.y(), euler.heading / kDegree,
+      sigma.z());
+}
+
+/// Level attitude with the forward axis at azimuth zero.
+Quaterniond level(const Vector3d& specific_force_b, const Vector3d& forward_b) {
+  const Quaterniond q = Quaterniond::FromTwoVectors(specific_force_b, Vector3d(-Vector3d::UnitZ()));
+  const double turned = azimuth(q * forward_b);
+  return Quaterniond(Eigen::AngleAxisd(-turned, Vector3d::UnitZ())) * q;
+}
+
+}  // namespace
+
+void AlignmentOptions::fields(ConfigFields& f) {
+  f.text("mode", mode, {"auto", "given"},
+         "auto: from rest and the GNSS course; given: roll_deg, pitch_deg and heading_deg");
+  const Range half_turn{-180, 180};
+  f.optional_number("roll_deg", roll_deg, half_turn, "of the vehicle at the start");
+  f.optional_number("pitch_deg", pitch_deg, {-90, 90}, "of the vehicle at the start");
+  f.optional_number("heading_deg", heading_deg, {-360, 360}, "of the vehicle at the start");
+  f.number("roll_sigma_deg", roll_sigma_deg, kPositive, "sigma of a given roll");
+  f.number("pitch_sigma_deg", pitch_sigma_deg, kPositive, "sigma of a given pitch");
+  f.number("heading_sigma_deg", heading_sigma_deg, kPositive, "sigma of a given heading");
+  f.number("min_speed_m_s", min_speed_m_s, kPositive, "slower, the course is no heading");
+  f.number("max_course_sigma_deg", max_course_sigma_deg, kPositive, "of one course");
+  f.number("max_turn_rate_deg_s", max_turn_rate_deg_s, kPositive,
+           "faster, the vehicle does not drive straight");
+  f.number("min_rest_s", min_rest_s, kPositive, "shorter rests are not used");
+  f.number("max_rest_s", max_rest_s, {10, 3600}, "how far back the start may lie");
+}
+
+/// Carries the attitude from a rest through the drive, in a level frame whose heading at rest is 0.
+class CarriedAttitude {
+ public:
+  explicit CarriedAttitude(const Vector3d& forward_b) : forward_b_(forward_b) {}
+
+  void rest(const RestMeans& means, double latitude, const ImuNoise& noise) {
+    attitude_.forward_b = forward_b_;
+    attitude_.q_l_b = level(means.accel_b, forward_b_);
+    // At rest the gyroscopes show their bias and the Earth's rate. Which way the horizontal part of
+    // the latter points is not known yet; the vertical part is what turns the heading.
+    const double vertical = wgs84::earth_rate_n(latitude).z();
+    bias_ = means.gyro_b - attitude_.q_l_b.conjugate() * Vector3d(0, 0, vertical);
+    earth_rate_z_ = vertical;
+    gravity_ = means.accel_b.norm();
+    velocity_l_.setZero();
+    since_rest_ = 0;
+    turned_ = 0;
+    const double white =
+        noise.gyro_noise_density * noise.gyro_noise_density / std::max(1.0, means.duration());
+    bias_variance_ = std::max(white, means.gyro_variance.maxCoeff());
+    noise_density_ = noise.gyro_noise_density;
+  }
+
+  void add(const ImuIncrement& increment) {
+    const double dt = increment.dt();
+    const Vector3d earth_b = attitude_.q_l_b.conjugate() * Vector3d(0, 0, earth_rate_z_);
+    const Vector3d dtheta = increment.dtheta_b - (bias_ + earth_b) * dt;
+    velocity_l_ +=
+        attitude_.q_l_b * so3::exp(0.5 * dtheta) * increment.dvel_b + Vector3d(0, 0, gravity_ * dt);
+    turned_ += (attitude_.q_l_b * dtheta).z();
+    attitude_.q_l_b = (attitude_.q_l_b * so3::exp(dtheta)).normalized();
+    attitude_.omega_b = dtheta / dt;
+    since_rest_ += dt;
+  }
+
+  const LevelAttitude& attitude() const { return attitude_; }
+
+  /// Variance of the azimuth's change since the rest [rad^2].
+  double drift_variance() const {
+    const double scale = kGyroScaleSigma * turned_;
+    return bias_variance_ * since_rest_ * since_rest_ +
+           noise_density_ * noise_density_ * since_rest_ + scale * scale;
+  }
+
+  /// Backwards, as far as the accelerometers can tell.
+  bool reverses() const {
+    if (since_rest_ > kSpeedChecked) return false;
+    const Vector3d forward_l = attitude_.q_l_b * forward_b_;
+    return velocity_l_.head<2>().dot(forward_l.head<2>()) < kReversing;
+  }
+
+ private:
+  Vector3d forward_b_;
+  LevelAttitude attitude_;
+  Vector3d bias_ = Vector3d::Zero();
+  Vector3d velocity_l_ = Vector3d::Zero();
+  double earth_rate_z_ = 0;
+  double gravity_ = 0;
+  double since_rest_ = 0;
+  double turned_ = 0;
+  double bias_variance_ = 0;
+  double noise_density_ = 0;
+};
+
+class Aligner::Impl {
+ public:
+  Impl(const AlignmentOptions& options, const ImuNoise& noise, const Mounting& mounting)
+      : options_(options),
+        noise_(noise),
+        q_v_b_(mounting.q_v_b.normalized()),
+        given_(given_angles(options)),
+        rest_(options.min_rest_s, options.max_rest_s),
+        carried_(q_v_b_.conjugate() * Vector3d::UnitX()),
+        courses_(course_limits(options)),
+        moving_(course_limits(options), given_.heading, q_v_b_, noise) {
+    if (options_.mode == "given") require_all(given_);
+  }
+
+  void add(const GnssFix& fix);
+  void add(const ImuIncrement& increment);
+  void restart() { *this = Impl(options_, noise_, Mounting{q_v_b_}); }
+  int64_t earliest_start_ns() const;
+  std::string why_not() const;
+
+  std::optional<Epoch> initial_;
+  std::string summary_;
+
+ private:
+  bool all_given() const { return options_.mode == "given"; }
+  void begin_given(const GnssFix& fix);
+  void note_hole(const ImuIncrement& increment);
+  void finish_rest_with_given_heading();
+  void start_at_rest(const HeadingOffset& heading, double drift_variance);
+  void accept(const Epoch& epoch, const std::string& how);
+
+  AlignmentOptions options_;
+  ImuNoise noise_;
+  Quaterniond q_v_b_;
+  GivenAngles given_;
+
+  RestDetector rest_;
+  CarriedAttitude carried_;
+  CourseFinder courses_;
+  MovingAlignment moving_;
+  std::optional<GnssFix> first_given_;  ///< mode given: the fix to start from
+  Vector3d rate_sum_ = Vector3d::Zero();
+  double rate_time_ = 0;
+
+  double latitude_ = 0;
+  std::optional<int64_t> first_increment_ns_, last_increment_ns_, first_fix_ns_, last_fix_ns_;
+};
+
+void Aligner::Impl::add(const GnssFix& fix) {
+  if (!first_fix_ns_) first_fix_ns_ = fix.t_ns;
+  last_fix_ns_ = fix.t_ns;
+  latitude_ = fix.antenna.latitude;
+  if (initial_) return;
+  if (all_given()) {
+    begin_given(fix);
+    return;
+  }
+  rest_.add(fix);
+  finish_rest_with_given_heading();
+  if (initial_) return;
+  if (rest_.established()) {
+    if (carried_.reverses()) courses_.interrupt();
+    const std::optional<HeadingOffset> heading = courses_.add(fix, carried_.attitude());
+    if (heading) start_at_rest(*heading, carried_.drift_variance());
+  } else if (const std::optional<AlignmentFindings> findings = moving_.add(fix)) {
+    accept(with_given_angles(initial_state(*findings, noise_), q_v_b_, given_), "while moving");
+  }
+}
+
+void Aligner::Impl::add(const ImuIncrement& increment) {
+  note_hole(increment);
+  if (!first_increment_ns_) first_increment_ns_ = increment.t_begin_ns;
+  last_increment_ns_ = increment.t_end_ns;
+  if (initial_) return;
+  if (all_given()) {
+    rate_sum_ += increment.dtheta_b;
+    rate_time_ += increment.dt();
+    if (first_given_ && first_given_->t_ns < *first_increment_ns_) first_given_.reset();
+    return;
+  }
+  moving_.add(increment);
+  carried_.add(increment);
+  if (rest_.add(increment)) {
+    carried_.rest(rest_.means(), latitude_, noise_);
+    courses_.interrupt();
+  }
+  finish_rest_with_given_heading();
+}
+
+void Aligner::Impl::note_hole(const ImuIncrement& increment) {
+  if (!last_increment_ns_) return;
+  if (seconds_between(*last_increment_ns_, increment.t_begin_ns) <= kLargestHole) return;
+  rest_ = RestDetector(options_.min_rest_s, options_.max_rest_s);
+  courses_.interrupt();
+  moving_.restart();
+  first_given_.reset();
+}
+
+/// Mode given: the first fix, with its velocity or the one that the next fix gives.
+void Aligner::Impl::begin_given(const GnssFix& fix) {
+  const bool covered = last_increment_ns_ && first_given_;
+  const GnssFix start = covered ? *first_given_ : fix;
+  const Vector3d omega_b =
+      rate_time_ > 0 ? Vector3d(rate_sum_ / rate_time_) : Vector3d(Vector3d::Zero());
+  if (start.velocity_n && last_increment_ns_) {
+    accept(given_state(start, *start.velocity_n, start.velocity_covariance, omega_b, q_v_b_, given_,
+                       noise_),
+           "as given");
+    return;
+  }
+  if (!covered) {
+    first_given_ = fix;
+    rate_sum_.setZero();
+    rate_time_ = 0;
+    return;
+  }
+  constexpr double kAcceleration = 1.5;  // [m/s^2] within the interval
+  const double dt = seconds_between(start.t_ns, fix.t_ns);
+  if (dt <= 0) return;
+  const Vector3d velocity_n = LocalFrame(start.antenna).to_local(fix.antenna) / dt;
+  const double unknown = kAcceleration * dt / 2;
+  const Matrix3d covariance = (start.position_covariance + fix.position_covariance) / (dt * dt) +
+                              unknown * unknown * Matrix3d::Identity();
+  accept(given_state(start, velocity_n, covariance, omega_b, q_v_b_, given_, noise_), "as given");
+}
+
+/// A rest with the heading given needs no course.
+void Aligner::Impl::finish_rest_with_given_heading() {
+  if (initial_ || !given_.heading || !rest_.established()) return;
+  const RestMeans means = rest_.means();
+  if (!rest_.ended() && means.duration() < kEnoughRest) return;
+  HeadingOffset heading;
+  heading.offset = given_.heading->value;
+  heading.variance = given_.heading->sigma * given_.heading->sigma / kReuse;
+  start_at_rest(heading, 0);
+}
+
+void Aligner::Impl::start_at_rest(const HeadingOffset& heading, double drift_variance) {
+  const std::optional<GnssFix> fix = rest_.first_fix();
+  if (!fix) return;
+  const RestMeans means = rest_.means();
+  AlignmentFindings findings;
+  findings.fix = *fix;
+  findings.q_v_b = q_v_b_;
+  findings.motion_covariance.topLeftCorner<3, 3>() =
+      kRestSpeedSigma * kRestSpeedSigma * Matrix3d::Identity();
+  const double T = means.duration();
+  const double accel_white = noise_.accel_noise_density * noise_.accel_noise_density / T;
+  const double gyro_white = noise_.gyro_noise_density * noise_.gyro_noise_density / T;
+  findings.specific_force_b = means.accel_b;
+  findings.specific_force_covariance =
+      (kReuse * means.accel_variance.cwiseMax(accel_white)).asDiagonal();
+  findings.gyro_b = means.gyro_b;
+  findings.gyro_covariance = (kReuse * means.gyro_variance.cwiseMax(gyro_white)).asDiagonal();
+  findings.heading = heading.offset;
+  findings.heading_variance = kReuse * heading.variance + drift_variance;
+  const Epoch epoch = with_given_angles(initial_state(findings, noise_), q_v_b_, given_);
+  const std::string source =
+      given_.heading ? std::string("heading given")
+                     : fmt::format("heading from {} courses up to {:.1f} s later", heading.courses,
+                                   seconds_between(epoch.t_ns, heading.end_ns));
+  accept(epoch, fmt::format("from {:.0f} s of rest, {}", T, source));
+}
+
+void Aligner::Impl::accept(const Epoch& epoch, const std::string& how) {
+  initial_ = epoch;
+  summary_ = fmt::format("aligned {}: {}", how, describe(epoch, q_v_b_));
+}
+
+int64_t Aligner::Impl::earliest_start_ns() const {
+  if (first_given_) return first_given_->t_ns;
+  if (!last_increment_ns_) {
+    return last_fix_ns_ ? *last_fix_ns_ - kNanosecondsPerSecond : INT64_MIN;
+  }
+  return all_given() ? *last_increment_ns_ : std::min(rest_.begin_ns(), *last_increment_ns_);
+}
+
+std::string Aligner::Impl::why_not() const {
+  const std::string head = "no initial attitude was found: ";
+  const std::string remedy =
+      "; give alignment.heading_deg, or alignment.mode=given with roll_deg, pitch_deg and "
+      "heading_deg";
+  if (!first_increment_ns_) return head + "there is no IMU data";
+  if (!first_fix_ns_) return head + "there is no usable GNSS fix";
+  if (*last_fix_ns_ < *first_increment_ns_ || *last_increment_ns_ < *first_fix_ns_) {
+    return head + fmt::format(
+                      "GNSS ({:.3f} to {:.3f} s) and IMU ({:.3f} to {:.3f} s) do not overlap in "
+                      "time; check the time systems and offsets of the import",
+                      to_seconds(*first_fix_ns_), to_seconds(*last_fix_ns_),
+                      to_seconds(*first_increment_ns_), to_seconds(*last_increment_ns_));
+  }
+  if (all_given()) return head + "there are fewer than two fixes within the IMU data";
+  const double fastest = std::max(courses_.fastest(), moving_.fastest());
+  std::string why =
+      rest_.established()
+          ? fmt::format("the vehicle rested, but ")
+          : fmt::format("the vehicle never rested for {:.1f} s (longest {:.1f} s), and ",
+                        options_.min_rest_s, rest_.longest_s());
+  if (fastest < options_.min_speed_m_s) {
+    why += fmt::format("never drove faster than alignment.min_speed_m_s={:g} (fastest {:.1f} m/s)",
+                       options_.min_speed_m_s, fastest);
+  } else {
+    why += fmt::format(
+        "never drove straight for long enough on fixes good enough for its heading "
+        "(alignment.max_turn_rate_deg_s={:g}, max_course_sigma_deg={:g}; fastest {:.1f} m/s)",
+        options_.max_turn_rate_deg_s, options_.max_course_sigma_deg, fastest);
+  }
+  return head + why + remedy;
+}
+
+Aligner::Aligner(const AlignmentOptions& options, const ImuNoise& noise, const Mounting& mounting)
+    : impl_(std::make_unique<Impl>(options, noise, mounting)) {}
+Aligner::~Aligner() = default;
+Aligner::Aligner(Aligner&&) noexcept = default;
+Aligner& Aligner::operator=(Aligner&&) noexcept = default;
+
+void Aligner::add(const GnssFix& fix) { impl_->add(fix); }
+void Aligner::add(const ImuIncrement& increment) { impl_->add(increment); }
+const std::optional<Epoch>& Aligner::initial() const { return impl_->initial_; }
+std::string Aligner::summary() const { return impl_->summary_; }
+int64_t Aligner::earliest_start_ns() const { return impl_->earliest_start_ns(); }
+std::string Aligner::why_not() const { return impl_->why_not(); }
+void Aligner::restart() { impl_->restart(); }
+
+}  // namespace foucault

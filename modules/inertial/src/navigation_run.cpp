@@ -1,0 +1,433 @@
+#include "foucault/inertial/navigation_run.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "foucault/core/error.h"
+#include "foucault/core/time.h"
+#include "foucault/geodesy/local_frame.h"
+#include "foucault/inertial/increments.h"
+
+namespace foucault {
+
+namespace {
+
+constexpr double kRecentRatesMemory = 0.3;  // [s]: beyond vibration, well within a manoeuvre
+constexpr double kNoticeableGap = 0.2;      // [s]: a few lost samples are not worth a line
+constexpr double kPi = 3.14159265358979323846;
+
+std::string text(int64_t t_ns) { return fmt::format("{:.3f} s", to_seconds(t_ns)); }
+
+FixQuality quality_from(const std::string& name) {
+  if (name == "single") return FixQuality::single;
+  if (name == "differential") return FixQuality::differential;
+  if (name == "ppp") return FixQuality::ppp;
+  if (name == "float_rtk") return FixQuality::float_rtk;
+  if (name == "fixed_rtk") return FixQuality::fixed_rtk;
+  return FixQuality::unknown;
+}
+
+bool position_is_valid(const Geodetic& position) {
+  return std::isfinite(position.latitude) && std::isfinite(position.longitude) &&
+         std::isfinite(position.height) && std::abs(position.latitude) <= kPi / 2;
+}
+
+/// The fix with the sigmas of the configuration.
+GnssFix weighted(const GnssFix& fix, const GnssOptions& options) {
+  GnssFix result = fix;
+  result.position_covariance *= options.sigma_scale * options.sigma_scale;
+  const double floor_variance = options.sigma_floor_m * options.sigma_floor_m;
+  for (int axis = 0; axis < 3; ++axis) {
+    double& variance = result.position_covariance(axis, axis);
+    if (variance < floor_variance) variance = floor_variance;
+  }
+  return result;
+}
+
+bool covariance_is_valid(const Eigen::Matrix3d& covariance) {
+  if (!covariance.allFinite() || covariance.diagonal().minCoeff() <= 0) return false;
+  const Eigen::LLT<Eigen::Matrix3d> llt(covariance);
+  return llt.info() == Eigen::Success;
+}
+
+/// Survival function of the chi-square distribution with 3 degrees of freedom.
+double chi_square_3_tail(double x) {
+  return std::erfc(std::sqrt(x / 2)) + std::sqrt(2 * x / kPi) * std::exp(-x / 2);
+}
+
+double normalized_square(const Innovation& innovation) {
+  const Eigen::LLT<Eigen::Matrix3d> llt(innovation.covariance);
+  return innovation.value_n.dot(llt.solve(innovation.value_n));
+}
+
+/// A minus B [m], in the NED of B.
+Eigen::Vector3d difference_n(const Geodetic& a, const Geodetic& b) {
+  return LocalFrame(b).to_local(a);
+}
+
+Geodetic antenna_of(const Epoch& epoch, const Eigen::Vector3d& p_b_a) {
+  return LocalFrame(epoch.position).to_geodetic(epoch.q_n_b * p_b_a);
+}
+
+}  // namespace
+
+void GnssOptions::fields(ConfigFields& f) {
+  f.text("min_quality", min_quality,
+         {"any", "single", "differential", "ppp", "float_rtk", "fixed_rtk"},
+         "fixes of a lower quality are not used");
+  f.number("sigma_scale", sigma_scale, kPositive, "factor on the sigmas of the positions");
+  f.number("sigma_floor_m", sigma_floor_m, kNotNegative, "smallest sigma of a position, each axis");
+  f.number("gate_false_alarm", gate_false_alarm, {0, 0.5},
+           "probability that a good fix is taken for an outlier; 0: no gate");
+  f.integer("reinstate_after", reinstate_after, {1, 1e9},
+            "outliers in a row after which fixes are believed again");
+}
+
+void GapOptions::fields(ConfigFields& f) {
+  f.number("max_gap_s", max_gap_s, kNotNegative,
+           "longer holes in the IMU data start a new alignment");
+  f.number("rate_sigma_deg_s", rate_sigma_deg_s, kNotNegative,
+           "angular rate in a hole against the one before it, 1 sigma");
+  f.number("accel_sigma_m_s2", accel_sigma_m_s2, kNotNegative,
+           "specific force in a hole against the one before it, 1 sigma");
+}
+
+NavigationRun::NavigationRun(std::unique_ptr<Navigator> navigator, Aligner aligner,
+                             const NavigationRunOptions& options, Sink& sink)
+    : navigator_(std::move(navigator)),
+      aligner_(std::move(aligner)),
+      options_(options),
+      sink_(sink) {}
+
+void NavigationRun::process(const Measurement& measurement) {
+  count(measurement);
+  if (aligned_) {
+    take(measurement);
+  } else {
+    align(measurement);
+  }
+}
+
+void NavigationRun::count(const Measurement& measurement) {
+  if (const auto* increment = std::get_if<ImuIncrement>(&measurement)) {
+    ++counts_.increments;
+    const bool backward = last_increment_end_ns_ && increment->t_begin_ns < *last_increment_end_ns_;
+    if (backward || increment->t_end_ns <= increment->t_begin_ns) {
+      throw DataError(fmt::format(
+          "IMU increment from {} to {} overlaps what came before (up to {}); sort the IMU data by "
+          "time and remove duplicates",
+          text(increment->t_begin_ns), text(increment->t_end_ns),
+          text(last_increment_end_ns_.value_or(increment->t_begin_ns))));
+    }
+    last_increment_end_ns_ = increment->t_end_ns;
+  }
+  if (const auto* fix = std::get_if<GnssFix>(&measurement)) {
+    ++counts_.fixes;
+    const bool good_position = position_is_valid(fix->antenna);
+    const bool good_sigma = covariance_is_valid(weighted(*fix, options_.gnss).position_covariance);
+    if (!good_position) {
+      ++counts_.bad_position;
+    } else if (!good_sigma) {
+      ++counts_.bad_sigma;
+    } else if (fix->quality < quality_from(options_.gnss.min_quality)) {
+      ++counts_.low_quality;
+    }
+    if ((!good_position || !good_sigma) && !counts_.first_bad_ns) counts_.first_bad_ns = fix->t_ns;
+  }
+}
+
+// Alignment -------------------------------------------------------------------------------------
+
+void NavigationRun::align(const Measurement& measurement) {
+  held_.push_back(measurement);
+  if (const auto* increment = std::get_if<ImuIncrement>(&measurement)) aligner_.add(*increment);
+  if (const auto* fix = std::get_if<GnssFix>(&measurement)) {
+    const GnssFix trusted = weighted(*fix, options_.gnss);
+    const bool usable = position_is_valid(fix->antenna) &&
+                        covariance_is_valid(trusted.position_covariance) &&
+                        fix->quality >= quality_from(options_.gnss.min_quality);
+    if (usable) aligner_.add(trusted);
+  }
+  if (aligner_.initial()) {
+    start(*aligner_.initial());
+  } else {
+    drop_what_no_start_needs();
+  }
+}
+
+void NavigationRun::drop_what_no_start_needs() {
+  const int64_t earliest_ns = aligner_.earliest_start_ns();
+  while (!held_.empty() && stamp(held_.front()) < earliest_ns) held_.pop_front();
+}
+
+void NavigationRun::start(const Epoch& initial) {
+  const NoticeKind kind = started_before_ ? NoticeKind::realigned : NoticeKind::aligned;
+  sink_.notice({initial.t_ns, kind, aligner_.summary()});
+  aligned_ = true;
+  started_before_ = true;
+  time_ns_ = initial.t_ns;
+  last_node_ns_ = initial.t_ns;
+  gated_in_a_row_ = 0;
+  navigator_->start(initial);
+  emit_epoch();
+
+  std::deque<Measurement> replay;
+  replay.swap(held_);
+  for (const Measurement& measurement : replay) {
+    if (stamp(measurement) > initial.t_ns) take(measurement);
+  }
+}
+
+void NavigationRun::realign(const ImuIncrement& next) {
+  sink_.notice({next.t_begin_ns, NoticeKind::imu_gap,
+                fmt::format("no IMU data for {:.1f} s from {}; aligning anew",
+                            seconds_between(time_ns_, next.t_begin_ns), text(time_ns_))});
+  aligned_ = false;
+  std::deque<Event> pending;
+  pending.swap(pending_);
+  recent_ = RecentRates();
+  last_fix_ns_.reset();
+  fix_interval_ns_ = 0;
+  aligner_.restart();
+  for (const Event& event : pending) {
+    const Measurement measurement = std::visit([](const auto& e) { return Measurement(e); }, event);
+    if (stamp(measurement) >= next.t_begin_ns) take(measurement);
+  }
+  take(next);
+}
+
+// The aligned run -------------------------------------------------------------------------------
+
+void NavigationRun::take(const Measurement& measurement) {
+  if (!aligned_) {  // a hole found while replaying has ended the alignment
+    align(measurement);
+  } else if (const auto* increment = std::get_if<ImuIncrement>(&measurement)) {
+    take_increment(*increment);
+  } else if (const auto* fix = std::get_if<GnssFix>(&measurement)) {
+    take_event(*fix);
+  } else if (const auto* request = std::get_if<EpochRequest>(&measurement)) {
+    take_event(*request);
+  }
+}
+
+void NavigationRun::take_event(const Event& event) {
+  const auto stamp_of = [](const Event& e) {
+    return std::visit([](const auto& m) { return m.t_ns; }, e);
+  };
+  const int64_t latest_ns = pending_.empty() ? time_ns_ : stamp_of(pending_.back());
+  if (stamp_of(event) >= latest_ns) {
+    pending_.push_back(event);
+    if (stamp_of(event) == time_ns_) handle_stop();
+  } else if (const auto* fix = std::get_if<GnssFix>(&event)) {
+    FixResult result;
+    result.t_ns = fix->t_ns;
+    result.verdict = FixVerdict::out_of_order;
+    result.quality = fix->quality;
+    result.antenna = fix->antenna;
+    sink_.fix(result);
+  }
+}
+
+void NavigationRun::take_increment(const ImuIncrement& increment) {
+  ImuIncrement rest = increment;
+  if (rest.t_begin_ns < time_ns_) rest = split(increment, time_ns_).second;
+  if (rest.t_begin_ns > time_ns_ && !bridge_gap(rest)) return;
+  advance(rest);
+  recent_.add(rest);
+  if (options_.rate == EpochRate::imu) emit_epoch();
+}
+
+/// False if the hole is too long and a new alignment has begun with `next`.
+bool NavigationRun::bridge_gap(const ImuIncrement& next) {
+  const double gap = seconds_between(time_ns_, next.t_begin_ns);
+  if (gap > options_.gaps.max_gap_s) {
+    realign(next);
+    return false;
+  }
+  if (recent_.memory == 0) recent_.add(next);
+  const double root = std::sqrt(gap);
+  const int64_t step_ns = next.t_end_ns - next.t_begin_ns;
+  while (time_ns_ < next.t_begin_ns) {
+    ImuIncrement made_up;
+    made_up.t_begin_ns = time_ns_;
+    made_up.t_end_ns = std::min(time_ns_ + step_ns, next.t_begin_ns);
+    made_up.dtheta_b = recent_.gyro_b * made_up.dt();
+    made_up.dvel_b = recent_.accel_b * made_up.dt();
+    made_up.extra_gyro_noise_density = options_.gaps.rate_sigma_deg_s * kPi / 180 * root;
+    made_up.extra_accel_noise_density = options_.gaps.accel_sigma_m_s2 * root;
+    advance(made_up);
+  }
+  recent_ = RecentRates();
+  sink_.notice(
+      {next.t_begin_ns, NoticeKind::imu_gap,
+       fmt::format("no IMU data for {:.3f} s up to {}; bridged", gap, text(next.t_begin_ns))});
+  return true;
+}
+
+void NavigationRun::RecentRates::add(const ImuIncrement& increment) {
+  const double dt = increment.dt();
+  memory = std::min(memory + dt, kRecentRatesMemory);
+  const double weight = std::min(1.0, dt / memory);
+  gyro_b += weight * (increment.dtheta_b / dt - gyro_b);
+  accel_b += weight * (increment.dvel_b / dt - accel_b);
+}
+
+/// Propagates over the increment, which begins now, with a stop wherever something is due.
+void NavigationRun::advance(const ImuIncrement& increment) {
+  ImuIncrement rest = increment;
+  while (const std::optional<int64_t> stop_ns = next_stop(rest.t_end_ns)) {
+    if (*stop_ns >= rest.t_end_ns) {
+      propagate(rest);
+      handle_stop();
+      return;
+    }
+    const auto [until_stop, after_stop] = split(rest, *stop_ns);
+    propagate(until_stop);
+    handle_stop();
+    rest = after_stop;
+  }
+  propagate(rest);
+}
+
+void NavigationRun::propagate(const ImuIncrement& increment) {
+  navigator_->propagate(increment);
+  time_ns_ = increment.t_end_ns;
+}
+
+/// The next stamp up to end_ns at which to stop, later than now.
+std::optional<int64_t> NavigationRun::next_stop(int64_t end_ns) const {
+  int64_t stop_ns = std::max(hold_due_ns(), time_ns_ + 1);
+  if (!pending_.empty()) {
+    stop_ns = std::min(stop_ns,
+                       std::visit([](const auto& event) { return event.t_ns; }, pending_.front()));
+  }
+  if (stop_ns > end_ns) return std::nullopt;
+  return stop_ns;
+}
+
+/// A fix expected about when the hold is due is waited for: stamps that jitter must not make pairs
+/// of nodes a millisecond apart.
+int64_t NavigationRun::hold_due_ns() const {
+  const int64_t interval_ns = nanoseconds(options_.node_interval_s);
+  const int64_t due_ns = last_node_ns_ + interval_ns;
+  if (!last_fix_ns_ || fix_interval_ns_ == 0) return due_ns;
+  const int64_t grace_ns = interval_ns / 20;
+  const int64_t off_ns = std::abs(*last_fix_ns_ + fix_interval_ns_ - due_ns);
+  const bool jitter = off_ns > 1000 && off_ns < grace_ns;
+  return jitter ? due_ns + grace_ns : due_ns;
+}
+
+/// Everything due now: fixes first, then a hold if still needed, then one epoch.
+void NavigationRun::handle_stop() {
+  const auto is_now = [this](const Event& event) {
+    return std::visit([this](const auto& e) { return e.t_ns <= time_ns_; }, event);
+  };
+  while (!pending_.empty() && is_now(pending_.front())) {
+    const Event event = pending_.front();
+    pending_.pop_front();
+    if (const auto* fix = std::get_if<GnssFix>(&event)) handle_fix(*fix);
+  }
+  if (time_ns_ >= hold_due_ns()) hold();
+  emit_epoch();
+}
+
+void NavigationRun::hold() {
+  navigator_->hold();
+  last_node_ns_ = time_ns_;
+}
+
+void NavigationRun::emit_epoch() {
+  if (last_epoch_ns_ == time_ns_) return;
+  last_epoch_ns_ = time_ns_;
+  sink_.epoch(navigator_->epoch());
+}
+
+// Fixes -----------------------------------------------------------------------------------------
+
+void NavigationRun::handle_fix(const GnssFix& fix) {
+  FixResult result;
+  result.t_ns = fix.t_ns;
+  result.quality = fix.quality;
+  result.antenna = fix.antenna;
+  const GnssFix trusted = weighted(fix, options_.gnss);
+  if (!position_is_valid(fix.antenna) || !covariance_is_valid(trusted.position_covariance)) {
+    result.verdict = FixVerdict::bad_sigma;
+  } else {
+    const Innovation innovation = navigator_->innovation(trusted);
+    result.innovation_n = innovation.value_n;
+    result.innovation_covariance = innovation.covariance;
+    result.verdict = judge(trusted, innovation);
+    if (result.verdict == FixVerdict::used) {
+      use(trusted, result);
+    } else {
+      result.postfit_n = result.innovation_n;
+    }
+  }
+  if (result.verdict != FixVerdict::used) notice_first_rejection(fix, result.verdict);
+  sink_.fix(result);
+}
+
+FixVerdict NavigationRun::judge(const GnssFix& fix, const Innovation& innovation) {
+  if (fix.quality < quality_from(options_.gnss.min_quality)) return FixVerdict::low_quality;
+  const double tail = chi_square_3_tail(normalized_square(innovation));
+  if (tail >= options_.gnss.gate_false_alarm) {
+    gated_in_a_row_ = 0;
+    return FixVerdict::used;
+  }
+  ++gated_in_a_row_;
+  return gated_in_a_row_ > options_.gnss.reinstate_after ? FixVerdict::used : FixVerdict::gated;
+}
+
+void NavigationRun::use(const GnssFix& fix, FixResult& result) {
+  navigator_->update(fix);
+  remember_fix_time();
+  const Epoch epoch = navigator_->epoch();
+  result.postfit_n = difference_n(fix.antenna, antenna_of(epoch, fix.p_b_a));
+}
+
+void NavigationRun::remember_fix_time() {
+  if (last_fix_ns_) fix_interval_ns_ = time_ns_ - *last_fix_ns_;
+  last_fix_ns_ = time_ns_;
+  last_node_ns_ = time_ns_;
+}
+
+void NavigationRun::notice_first_rejection(const GnssFix& fix, FixVerdict verdict) {
+  if (verdict != FixVerdict::bad_sigma || noticed_bad_) return;
+  noticed_bad_ = true;
+  sink_.notice({fix.t_ns, NoticeKind::fix_rejected,
+                fmt::format("fix at {} has no usable sigma or position; such fixes are left out",
+                            text(fix.t_ns))});
+}
+
+// The end ---------------------------------------------------------------------------------------
+
+void NavigationRun::finish() {
+  throw_if_nothing_usable();
+  if (!started_before_) throw DataError(aligner_.why_not());
+}
+
+void NavigationRun::throw_if_nothing_usable() const {
+  if (counts_.increments == 0) {
+    throw DataError(
+        "no IMU data in the log; import a recording with angular rates and specific force");
+  }
+  if (counts_.fixes == 0) {
+    throw DataError("no GNSS fix in the log; import a recording with positions");
+  }
+  if (counts_.usable() > 0) return;
+  throw DataError(fmt::format(
+      "none of the {} GNSS fixes can be used: {} with a sigma that is zero, negative or not "
+      "finite, "
+      "{} with a position that is not finite, {} below gnss.min_quality={}{}; give sigmas in the "
+      "import, or gnss.sigma_floor_m where they are zero",
+      counts_.fixes, counts_.bad_sigma, counts_.bad_position, counts_.low_quality,
+      options_.gnss.min_quality,
+      counts_.first_bad_ns ? fmt::format("; the first bad one at {}", text(*counts_.first_bad_ns))
+                           : std::string()));
+}
+
+}  // namespace foucault
