@@ -78,7 +78,7 @@ void fuse_force_length(Epoch& epoch, const AlignmentFindings& findings) {
   const double variance = along_b.dot(findings.specific_force_covariance * along_b) +
                           along_n.dot(findings.motion_covariance.block<3, 3>(3, 3) * along_n) +
                           kGravitySigma * kGravitySigma;
-  update<1>(epoch, H, Eigen::Matrix<double, 1, 1>(excess), Eigen::Matrix<double, 1, 1>(variance));
+  update(epoch, H, excess, variance);
 }
 
 /// The prior of the accelerometer bias; wider if one axis shows it to be too narrow.
