@@ -24,6 +24,7 @@ constexpr double kRollRate = 4 * kDeg;       ///< into and out of turns [rad/s]
 constexpr double kTurnAltitude = 600;        ///< no turns lower [m]
 constexpr double kSlowAltitude = 4000;       ///< slower below, on the way down [m]
 constexpr double kLandingReserve = 200;      ///< for the approach, the landing and the taxi [s]
+constexpr double kShortestFlight = 600;      ///< a shorter one does not land [s]
 constexpr double kFirstTurnAfter = 100;      ///< [s]
 constexpr double kMaxDeviation = 40 * kDeg;  ///< beyond, turns lead back to the first heading
 
@@ -35,8 +36,8 @@ double toward(double value, double target, double step) {
 
 /// The highest altitude from which a flight of this length can be down in time.
 double reachable_altitude(double flight_s) {
-  const double airborne = std::max(0.0, flight_s - kTakeOffSpeed / kRunwayAcceleration);
-  const double vertical = std::max(0.0, airborne - kLandingReserve);
+  if (flight_s < kShortestFlight) return kCruiseAltitude;
+  const double vertical = flight_s - kTakeOffSpeed / kRunwayAcceleration - kLandingReserve;
   return std::min(kCruiseAltitude, 0.9 * vertical / (1 / kClimbRate + 1 / kDescentRate));
 }
 
@@ -62,7 +63,8 @@ Airliner::Airliner(const ScenarioOptions& options)
 }
 
 bool Airliner::descends() const {
-  return duration_s_ - time_ < altitude_ / kDescentRate + kLandingReserve;
+  const bool lands = duration_s_ - rest_s_ >= kShortestFlight;
+  return lands && duration_s_ - time_ < altitude_ / kDescentRate + kLandingReserve;
 }
 
 double Airliner::wanted_speed() const {

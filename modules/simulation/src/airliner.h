@@ -6,7 +6,8 @@
 namespace foucault::simulation {
 
 /// An airliner: stands, takes off, climbs at 12 m/s, cruises at 250 m/s, makes coordinated turns,
-/// descends, lands and stops at the height it started from. A short flight stays low.
+/// descends, lands and stops at the height it started from. A short flight stays low, one of less
+/// than ten minutes ends in the climb.
 class Airliner : public Rollout {
  public:
   explicit Airliner(const ScenarioOptions& options);

@@ -103,6 +103,15 @@ TEST(Scenario, AirlinerClimbsCruisesTurnsAndLands) {
   EXPECT_LT(end.velocity_n.norm(), 0.01);
 }
 
+TEST(Scenario, ShortFlightStillFlies) {
+  ScenarioOptions options;
+  options.name = "airliner";
+  options.duration_s = 200;
+  const Motion end = make_trajectory(options).at(199);
+  EXPECT_GT(end.position.height, 800);
+  EXPECT_GT(end.velocity_n.norm(), 100);
+}
+
 TEST(Scenario, StartsWhereAndHowItIsTold) {
   for (const std::string& name : scenario_names()) {
     ScenarioOptions options;
