@@ -7,8 +7,8 @@
 namespace foucault::reports {
 namespace {
 
-constexpr double kTypicalShare = 0.02;  // of the numbers that RangeRole::typical ignores, each side
-constexpr double kYPadding = 0.06;      // of the range, above and below
+constexpr double kTypicalShare = 0.1;  // of the numbers that RangeRole::typical ignores, each side
+constexpr double kYPadding = 0.06;     // of the range, above and below
 
 /// The finite numbers that an axis has to show.
 class Extent {

@@ -9,7 +9,7 @@ namespace {
 constexpr double kPoints = 9.5;
 constexpr double kRow = 5.0 * kPixelsPerMillimetre;
 constexpr double kSample = 5.5 * kPixelsPerMillimetre;
-constexpr double kGap = 1.3 * kPixelsPerMillimetre;
+constexpr double kGap = 1.5 * kPixelsPerMillimetre;
 constexpr double kBetween = 5.0 * kPixelsPerMillimetre;
 constexpr double kPatchHeight = 2.6 * kPixelsPerMillimetre;
 
@@ -43,7 +43,7 @@ void draw_sample(Canvas& canvas, const LegendEntry& entry, double x, double midd
   const cv::Point2d centre(x + kSample / 2, middle);
   switch (entry.sample) {
     case LegendEntry::Sample::line:
-      return canvas.polylines({{{x, middle}, {x + kSample, middle}}},
+      return canvas.polylines({{{x + entry.size, middle}, {x + kSample - entry.size, middle}}},
                               {colour, std::max(1.6, entry.size) * kPixelsPerPoint,
                                std::max(entry.opacity, 0.5), entry.dashed},
                               everywhere);

@@ -40,12 +40,12 @@ class PanelPainter {
       : placed_(placed), panel_(*placed.panel), plot_(placed.plot), canvas_(canvas) {}
 
   void paint() {
-    shades();
     if (panel_.heat_map) {
       heat_map();
     } else {
       grid();
     }
+    shades();
     size_t bar_group = 0;
     for (const Series& series : panel_.series) {
       paint_series(series, bar_group);

@@ -15,6 +15,7 @@ constexpr double kDegreesPerHour = kDegrees * 3600;
 constexpr double kMilligal = 1e5;  // a m/s^2
 constexpr size_t kMostGaps = 64;
 constexpr size_t kMostNotices = 200;
+constexpr size_t kMostOutages = 1000;
 
 constexpr double kSemiMajorAxis = 6378137.0;       // WGS-84 [m]
 constexpr double kFlattening = 1 / 298.257223563;  // WGS-84
@@ -159,6 +160,10 @@ void RunData::add(const FixResult& fix) {
   const Eigen::Vector3d sigma = sigma_of(fix.innovation_covariance);
   if (used) {
     fix_steps.observe(t);
+    if (fix_steps.last_was_gap()) {
+      innovation.rows.add_gap();
+      postfit.rows.add_gap();
+    }
     fix_places.add(t, {p.x(), p.y(), static_cast<double>(fix.quality)});
     innovation.add(t, fix.innovation_n, sigma);
     postfit.add(t, fix.postfit_n, sigma);
@@ -169,7 +174,6 @@ void RunData::add(const FixResult& fix) {
 }
 
 void RunData::add(const Notice& notice) {
-  seconds(notice.t_ns);
   ++notices_seen;
   if (notices.size() < kMostNotices) notices.push_back(notice);
 }
@@ -190,7 +194,17 @@ void RunData::add(const Epoch& epoch, const ReferenceError& error) {
 void RunData::add_imu_stamp(int64_t t_ns) { imu_steps.observe(seconds(t_ns)); }
 
 void RunData::add_outage(int64_t begin_ns, int64_t end_ns) {
-  if (outages.size() < 1000) outages.push_back({seconds(begin_ns), seconds(end_ns)});
+  if (outages_.size() < kMostOutages) outages_.push_back({begin_ns, end_ns});
+}
+
+std::vector<Interval> RunData::outages() const {
+  std::vector<Interval> intervals;
+  if (!start_ns_) return intervals;
+  for (const Stretch& outage : outages_) {
+    intervals.push_back(
+        {seconds_between(*start_ns_, outage.begin_ns), seconds_between(*start_ns_, outage.end_ns)});
+  }
+  return intervals;
 }
 
 }  // namespace foucault::reports

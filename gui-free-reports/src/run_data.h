@@ -107,8 +107,8 @@ class RunData {
   void add_imu_stamp(int64_t t_ns);
   void add_outage(int64_t begin_ns, int64_t end_ns);
 
+  /// The first stamp of a measurement or an epoch.
   std::optional<int64_t> start_ns() const { return start_ns_; }
-  double seconds(int64_t t_ns);
 
   DecimatedTable track{2};            ///< north, east
   DecimatedTable fix_places{3};       ///< north, east, quality; used fixes
@@ -130,15 +130,22 @@ class RunData {
   StepWatch imu_steps{0.2};
   StepWatch fix_steps{4.0};  ///< between used fixes
   StepWatch epoch_steps{3.0};
-  std::vector<Interval> outages;
+  std::vector<Interval> outages() const;
   std::vector<Notice> notices;  ///< the first ones
   size_t notices_seen = 0;
 
  private:
+  struct Stretch {
+    int64_t begin_ns = 0;
+    int64_t end_ns = 0;
+  };
+
+  double seconds(int64_t t_ns);
   Eigen::Vector3d place(const Geodetic& geodetic);
   void mark_gap();
 
   Mounting mounting_;
+  std::vector<Stretch> outages_;
   std::optional<int64_t> start_ns_;
   std::optional<StartPlane> plane_;
   std::optional<double> last_heading_;  // [rad], continuous

@@ -13,12 +13,11 @@ namespace foucault::reports {
 namespace {
 
 constexpr double kStackedHeight = 172;  // [mm], of three panels above each other
-constexpr double kBandOpacity = 0.22;
 
 using Names = std::array<const char*, 3>;
 constexpr Names kNed{"North", "East", "Down"};
 constexpr Names kEuler{"Roll", "Pitch", "Heading"};
-constexpr Names kXyz{"x", "y", "z"};
+constexpr Names kXyz{"x axis", "y axis", "z axis"};
 constexpr std::array<Ink, 3> kAxisInks{Ink::blue, Ink::vermillion, Ink::green};
 
 Axis time_axis() {
@@ -44,15 +43,16 @@ bool overlaps(const Interval& a, const std::vector<Interval>& others) {
 /// Outages, and gaps that nobody asked for.
 std::vector<Shade> time_shades(const RunData& data) {
   std::vector<Shade> shades;
-  for (const Interval& outage : data.outages) {
+  const std::vector<Interval> outages = data.outages();
+  for (const Interval& outage : outages) {
     shades.push_back({outage.begin, outage.end, "GNSS withheld", Ink::gray});
   }
   for (const Interval& gap : data.fix_steps.longest_gaps()) {
-    if (overlaps(gap, data.outages)) continue;
-    shades.push_back({gap.begin, gap.end, "no usable GNSS", Ink::gray});
+    if (overlaps(gap, outages)) continue;
+    shades.push_back({gap.begin, gap.end, "no usable GNSS", Ink::orange});
   }
   for (const Interval& gap : data.imu_steps.longest_gaps()) {
-    shades.push_back({gap.begin, gap.end, "IMU gap", Ink::vermillion});
+    shades.push_back({gap.begin, gap.end, "IMU gap", Ink::purple});
   }
   return shades;
 }
@@ -134,13 +134,13 @@ Figure stacked(const std::string& name, const std::string& title, const std::str
 }
 
 struct Quantity {
-  std::string noun;  ///< of the axis titles
+  std::string noun;  ///< of the columns, after the name of the axis
   std::string unit;
   Names axes;
 };
 
-std::string axis_label(const char* axis, const std::string& noun) {
-  return noun.empty() ? std::string(axis) : std::string(axis) + " " + noun;
+std::string column_name(const char* axis, const std::string& noun) {
+  return std::string(axis) + " " + noun;
 }
 
 /// A panel an axis: the estimate within its 3-sigma bounds.
@@ -148,18 +148,23 @@ void add_estimate_panels(const RunData& data, const Triad& triad, const Quantity
                          double least_span, Figure& figure) {
   const DecimatedTable::Rows rows = triad.rows.rows();
   for (size_t i = 0; i < 3; ++i) {
-    const std::string label = axis_label(quantity.axes[i], quantity.noun);
-    Panel panel = time_panel(data, value_axis(label, quantity.unit));
+    const std::string column = column_name(quantity.axes[i], quantity.noun);
+    Panel panel = time_panel(data, value_axis(quantity.axes[i], quantity.unit));
     panel.y.least_span = least_span;
     panel.series.push_back(
-        bounds(rows.x, rows.columns[i], rows.columns[i + 3], label + " 3 sigma"));
+        bounds(rows.x, rows.columns[i], rows.columns[i + 3], column + " 3 sigma"));
     panel.series.push_back(line("estimate", Ink::blue, rows.x, rows.columns[i]));
+    panel.series.back().column = column;
     figure.panels.push_back(std::move(panel));
   }
 }
 
+std::string with_unit(double value, const std::string& unit) {
+  return significant_text(value) + (unit == "°" ? "" : " ") + unit;
+}
+
 std::string statistics_note(double rms, double inside, const std::string& unit, double factor) {
-  return fmt::format("RMS {} {} · {} % within 3σ", significant_text(rms * factor), unit,
+  return fmt::format("RMS {} · {} % within 3σ", with_unit(rms * factor, unit),
                      number_text(100 * inside, 1));
 }
 
@@ -180,11 +185,12 @@ void add_error_panels(const RunData& data, const Triad& triad, const Quantity& q
   const DecimatedTable::Rows rows = triad.rows.rows();
   const std::vector<double> zero(rows.x.size(), 0);
   for (size_t i = 0; i < 3; ++i) {
-    const std::string label = axis_label(quantity.axes[i], quantity.noun);
-    Panel panel = time_panel(data, value_axis(label, quantity.unit));
+    const std::string column = column_name(quantity.axes[i], quantity.noun);
+    Panel panel = time_panel(data, value_axis(quantity.axes[i], quantity.unit));
     panel.y.zero_centred = true;
-    panel.series.push_back(bounds(rows.x, zero, rows.columns[i + 3], label + " 3 sigma"));
+    panel.series.push_back(bounds(rows.x, zero, rows.columns[i + 3], column + " 3 sigma"));
     panel.series.push_back(line("error", Ink::blue, rows.x, rows.columns[i]));
+    panel.series.back().column = column;
     figure.panels.push_back(std::move(panel));
   }
 }
@@ -253,7 +259,7 @@ Series fix_points(const DecimatedTable::Rows& rows) {
   series.label = "fix";
   series.column = "fix north";
   series.mark = Mark::points;
-  series.size = 2.6;
+  series.size = 1.9;
   series.categories = quality_categories();
   series.x = rows.columns[1];
   series.y = rows.columns[0];
@@ -297,8 +303,8 @@ std::optional<Figure> ground_track(const RunData& data, const std::string& subti
   const DecimatedTable::Rows track = data.track.rows();
   Series estimate = line("estimate", Ink::sky, track.columns[1], track.columns[0]);
   estimate.column = "estimate north";
-  estimate.size = 3.4;
-  estimate.opacity = 0.55;
+  estimate.size = 4;
+  estimate.opacity = 0.6;
   panel.series.push_back(estimate);
   if (!data.fix_places.empty()) panel.series.push_back(fix_points(data.fix_places.rows()));
   if (!data.rejected_places.empty()) {
@@ -329,7 +335,8 @@ std::optional<Figure> position_figure(const RunData& data, const std::string& su
       "North, east and height of the IMU with 3-sigma bounds (see the uncertainty figure where "
       "they "
       "are too narrow to be seen). Jumps at fixes after a gap are drift being corrected.";
-  add_estimate_panels(data, data.position, {"", "m", {"North", "East", "Height"}}, 0.1, figure);
+  add_estimate_panels(data, data.position, {"position", "m", {"North", "East", "Height"}}, 0.1,
+                      figure);
   return figure;
 }
 
@@ -339,7 +346,7 @@ std::optional<Figure> velocity_figure(const RunData& data, const std::string& su
   figure.caption =
       "Velocity in the local north-east-down with 3-sigma bounds. It should be smooth, and zero "
       "when the vehicle stands.";
-  add_estimate_panels(data, data.velocity, {"", "m/s", kNed}, 0.1, figure);
+  add_estimate_panels(data, data.velocity, {"velocity", "m/s", kNed}, 0.1, figure);
   return figure;
 }
 
@@ -350,7 +357,7 @@ std::optional<Figure> attitude_figure(const RunData& data, const std::string& su
       "Roll, pitch and heading of the vehicle with 3-sigma bounds; the heading is drawn without "
       "jumps at 360°. Heading is learnt while the vehicle accelerates and turns, so its bounds "
       "narrow then.";
-  add_estimate_panels(data, data.attitude, {"", "°", kEuler}, 0.5, figure);
+  add_estimate_panels(data, data.attitude, {"angle", "°", kEuler}, 0.5, figure);
   return figure;
 }
 
@@ -364,6 +371,7 @@ Panel sigma_panel(const RunData& data, const Triad& triad, const std::string& la
   panel.legend = LegendPlace::panel;
   for (size_t i = 0; i < 3; ++i) {
     panel.series.push_back(line(axes[i], kAxisInks[i], rows.x, rows.columns[i + 3]));
+    panel.series.back().column = label + " sigma " + axes[i];
   }
   return panel;
 }
@@ -420,7 +428,7 @@ std::optional<Figure> gyro_bias_figure(const RunData& data, const std::string& s
   figure.caption =
       "Bias on the axes of the IMU with 3-sigma bounds. After the first manoeuvres it should move "
       "slowly, within the bounds it had before.";
-  add_estimate_panels(data, data.gyro_bias, {"", "°/h", kXyz}, 1, figure);
+  add_estimate_panels(data, data.gyro_bias, {"bias", "°/h", kXyz}, 1, figure);
   return figure;
 }
 
@@ -430,30 +438,32 @@ std::optional<Figure> accel_bias_figure(const RunData& data, const std::string& 
   figure.caption =
       "Bias on the axes of the IMU with 3-sigma bounds (1 mGal = 10⁻⁵ m/s²). The horizontal axes "
       "are told from tilt only while the vehicle turns.";
-  add_estimate_panels(data, data.accel_bias, {"", "mGal", kXyz}, 10, figure);
+  add_estimate_panels(data, data.accel_bias, {"bias", "mGal", kXyz}, 10, figure);
   return figure;
 }
 
 namespace {
 
-/// Innovation bounds of all fixes, used or not, in order of time.
-Series innovation_bounds(const DecimatedTable::Rows& used, size_t axis, const std::string& label) {
+/// Innovation bounds of the used fixes.
+Series innovation_bounds(const DecimatedTable::Rows& used, size_t axis, const std::string& column) {
   const std::vector<double> zero(used.x.size(), 0);
-  Series series = bounds(used.x, zero, used.columns[axis + 3], label + " 3 sigma");
+  Series series = bounds(used.x, zero, used.columns[axis + 3], column + " 3 sigma");
   series.label = "±3σ predicted";
   return series;
 }
 
 Panel innovation_panel(const RunData& data, const DecimatedTable::Rows& used,
                        const DecimatedTable::Rows& rejected, size_t axis) {
-  const std::string label = axis_label(kNed[axis], "innovation");
-  Panel panel = time_panel(data, value_axis(label, "m"));
+  const std::string column = column_name(kNed[axis], "innovation");
+  Panel panel = time_panel(data, value_axis(kNed[axis], "m"));
   panel.y.zero_centred = true;
-  panel.series.push_back(innovation_bounds(used, axis, label));
+  panel.series.push_back(innovation_bounds(used, axis, column));
   panel.series.push_back(points("used", Ink::blue, 2.4, used.x, used.columns[axis]));
+  panel.series.back().column = column;
   if (rejected.x.empty()) return panel;
   panel.series.push_back(
       points("rejected", Ink::vermillion, 5, rejected.x, rejected.columns[axis]));
+  panel.series.back().column = column + " rejected";
   panel.series.back().shape = Shape::cross;
   panel.series.back().range_role = RangeRole::none;
   return panel;
@@ -487,7 +497,7 @@ std::optional<Figure> postfit_figure(const RunData& data, const std::string& sub
   const DecimatedTable::Rows rows = data.postfit.rows.rows();
   const Eigen::Vector3d rms = data.postfit.statistics.rms();
   for (size_t i = 0; i < 3; ++i) {
-    Panel panel = time_panel(data, value_axis(axis_label(kNed[i], "residual"), "m"));
+    Panel panel = time_panel(data, value_axis(kNed[i], "m"));
     panel.y.zero_centred = true;
     panel.series.push_back(points("residual", Ink::blue, 2.4, rows.x, rows.columns[i]));
     panel.series.back().in_legend = false;
@@ -508,10 +518,12 @@ namespace {
 Panel step_panel(const RunData& data, const StepWatch& watch, const std::string& label, Ink ink) {
   Panel panel = time_panel(data, value_axis(label, "s"));
   const DecimatedTable::Rows rows = watch.steps().rows();
-  panel.series.push_back(points(label, ink, 2.4, rows.x, rows.columns[0]));
+  panel.series.push_back(line(label, ink, rows.x, rows.columns[0]));
+  panel.series.back().size = 0.9;
   panel.series.back().in_legend = false;
-  panel.note = fmt::format("{} Hz · longest {} s · {} gaps", significant_text(watch.rate()),
-                           significant_text(watch.longest()), watch.gaps());
+  panel.note =
+      fmt::format("{} Hz · longest {} s · {} gap{}", significant_text(watch.rate()),
+                  significant_text(watch.longest()), watch.gaps(), watch.gaps() == 1 ? "" : "s");
   if (watch.longest() * watch.rate() > 20) {
     panel.y.kind = AxisKind::log;
   } else if (watch.longest() < 0.5) {

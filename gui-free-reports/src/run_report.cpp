@@ -229,7 +229,8 @@ class RunReport::Collector {
   Section health() const {
     Section section{"Data health", {}, {sampling_table(data)}, {}};
     if (section.tables.front().rows.empty()) section.tables.clear();
-    if (!data.notices.empty()) section.tables.push_back(notice_table(data, *data.start_ns()));
+    if (!data.notices.empty())
+      section.tables.push_back(notice_table(data, data.start_ns().value_or(0)));
     add_if(data_health_figure(data, subtitle()), section);
     return section;
   }

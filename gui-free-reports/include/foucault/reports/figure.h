@@ -14,8 +14,8 @@ namespace foucault::reports {
 enum class Mark { line, points, steps, bars, band };
 enum class Shape { dot, ring, cross, plus, triangle, square, diamond, star, tick };
 
-/// What the automatic range of the y axis takes from a series: all of it, its typical part (2 % to
-/// 98 %), or nothing. Points outside the range are drawn as arrowheads on the border.
+/// What the automatic range of the y axis takes from a series: all of it, its typical part (10 %
+/// to 90 %), or nothing. Points outside the range are drawn as arrowheads on the border.
 enum class RangeRole { full, typical, none };
 
 /// One of the kinds of point within a series, e.g. a fix type.
