@@ -4,6 +4,7 @@
 
 #include <limits>
 #include <random>
+#include <vector>
 
 namespace foucault {
 namespace {
@@ -38,15 +39,17 @@ TEST(Time, SecondOfWeekMayLieOutsideTheWeek) {
 }
 
 TEST(Time, OffsetByDate) {
+  // `date -u -d 1981-07-01 +%s` and so on, for each line of tzdata's leapseconds after 1980.
+  const std::vector<int64_t> steps{362793600,  394329600,  425865600, 489024000,  567993600,
+                                   631152000,  662688000,  709948800, 741484800,  773020800,
+                                   820454400,  867715200,  915148800, 1136073600, 1230768000,
+                                   1341100800, 1435708800, 1483228800};
   EXPECT_EQ(gps_utc_offset_s(0), 0);
-  EXPECT_EQ(gps_utc_offset_s(362793599 * kSecond), 0);   // 1981-06-30T23:59:59
-  EXPECT_EQ(gps_utc_offset_s(362793600 * kSecond), 1);   // 1981-07-01
-  EXPECT_EQ(gps_utc_offset_s(915148799 * kSecond), 12);  // 1998-12-31T23:59:59
-  EXPECT_EQ(gps_utc_offset_s(915148800 * kSecond), 13);
-  EXPECT_EQ(gps_utc_offset_s(1435708799 * kSecond), 16);  // 2015-06-30T23:59:59
-  EXPECT_EQ(gps_utc_offset_s(1435708800 * kSecond), 17);
-  EXPECT_EQ(gps_utc_offset_s(kBeforeLeap), 17);
-  EXPECT_EQ(gps_utc_offset_s(kBeforeLeap + kSecond), 18);
+  int offset = 0;
+  for (const int64_t step : steps) {
+    EXPECT_EQ(gps_utc_offset_s(step * kSecond - 1), offset) << step;
+    EXPECT_EQ(gps_utc_offset_s(step * kSecond), ++offset) << step;
+  }
   EXPECT_EQ(gps_utc_offset_s(std::numeric_limits<int64_t>::max()), 18);
 }
 
