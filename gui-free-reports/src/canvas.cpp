@@ -40,8 +40,13 @@ cv::Rect bounds(const std::vector<Polyline>& lines, double margin, const cv::Rec
 /// Coverage of a part of the image at four times its resolution.
 class FineMask {
  public:
-  explicit FineMask(const cv::Rect& area)
-      : area_(area), fine_(cv::Mat::zeros(area.height * kFine, area.width * kFine, CV_8UC1)) {}
+  /// `scratch` holds the pixels while the mask lives.
+  FineMask(const cv::Rect& area, std::vector<uchar>& scratch) : area_(area) {
+    const cv::Size size(area.width * kFine, area.height * kFine);
+    if (scratch.size() < static_cast<size_t>(size.area())) scratch.resize(size_t(size.area()));
+    fine_ = cv::Mat(size, CV_8UC1, scratch.data());
+    fine_.setTo(0);
+  }
 
   void line(const cv::Point2d& a, const cv::Point2d& b, double width) {
     cv::Point2d p = a;
@@ -242,7 +247,7 @@ Canvas::Canvas(cv::Size size, Typesetter& typesetter)
 void Canvas::polylines(const std::vector<Polyline>& lines, const Pen& pen, const cv::Rect& clip) {
   const cv::Rect area = bounds(lines, pen.width + 1, clip);
   if (area.empty()) return;
-  FineMask mask(area);
+  FineMask mask(area, scratch_);
   for (const Polyline& line : lines) {
     const std::vector<Polyline> parts =
         pen.dashed ? dashes(line, 4.5 * pen.width, 3 * pen.width) : std::vector<Polyline>{line};
@@ -257,7 +262,7 @@ void Canvas::polygons(const std::vector<Polyline>& convex, Rgb colour, double op
                       const cv::Rect& clip) {
   const cv::Rect area = bounds(convex, 1, clip);
   if (area.empty()) return;
-  FineMask mask(area);
+  FineMask mask(area, scratch_);
   for (const Polyline& polygon : convex) mask.convex(polygon);
   blend(mask.coverage(), area.tl(), colour, opacity);
 }
@@ -266,7 +271,7 @@ void Canvas::markers(const Polyline& places, Shape shape, double diameter, Rgb c
                      double opacity, const cv::Rect& clip) {
   const cv::Rect area = bounds({places}, diameter + 1, clip);
   if (area.empty()) return;
-  FineMask mask(area);
+  FineMask mask(area, scratch_);
   for (const cv::Point2d& place : places) add_marker(mask, shape, place, diameter);
   blend(mask.coverage(), area.tl(), colour, opacity);
 }

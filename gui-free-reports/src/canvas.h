@@ -85,6 +85,7 @@ class Canvas {
   void blend(const cv::Mat& coverage, cv::Point top_left, Rgb colour, double opacity);
 
   cv::Mat image_;
+  std::vector<uchar> scratch_;  // for the fine coverage; kept, as it is large
   Typesetter& typesetter_;
 };
 

@@ -9,6 +9,7 @@ namespace {
 constexpr double kPoints = 9.5;
 constexpr double kRow = 5.0 * kPixelsPerMillimetre;
 constexpr double kSample = 5.5 * kPixelsPerMillimetre;
+constexpr double kMarkerSample = 3 * kPixelsPerMillimetre;
 constexpr double kGap = 1.5 * kPixelsPerMillimetre;
 constexpr double kBetween = 5.0 * kPixelsPerMillimetre;
 constexpr double kPatchHeight = 2.6 * kPixelsPerMillimetre;
@@ -37,10 +38,14 @@ bool same(const LegendEntry& a, const LegendEntry& b) {
 
 bool has_data(const Series& series) { return !series.x.empty(); }
 
+double sample_width(const LegendEntry& entry) {
+  return entry.sample == LegendEntry::Sample::marker ? kMarkerSample : kSample;
+}
+
 void draw_sample(Canvas& canvas, const LegendEntry& entry, double x, double middle) {
   const cv::Rect everywhere({}, canvas.image().size());
   const Rgb colour = rgb(entry.ink);
-  const cv::Point2d centre(x + kSample / 2, middle);
+  const cv::Point2d centre(x + kMarkerSample / 2, middle);
   switch (entry.sample) {
     case LegendEntry::Sample::line:
       return canvas.polylines({{{x + entry.size, middle}, {x + kSample - entry.size, middle}}},
@@ -91,7 +96,7 @@ void add_missing(const std::vector<LegendEntry>& more, std::vector<LegendEntry>&
 Legend::Legend(std::vector<LegendEntry> entries, double width_px, Typesetter& typesetter) {
   double x = 0;
   for (LegendEntry& entry : entries) {
-    const double width = kSample + kGap + typesetter.width(entry.label, kPoints);
+    const double width = sample_width(entry) + kGap + typesetter.width(entry.label, kPoints);
     if (rows_ == 0) rows_ = 1;
     if (x > 0 && x + width > width_px) {
       x = 0;
@@ -116,7 +121,7 @@ void Legend::draw(Canvas& canvas, cv::Point2d top_left) const {
     style.points = kPoints;
     style.colour = rgb(Ink::black);
     style.y = AlignY::middle;
-    canvas.text(placed.entry.label, {x + kSample + kGap, middle}, style);
+    canvas.text(placed.entry.label, {x + sample_width(placed.entry) + kGap, middle}, style);
   }
 }
 

@@ -72,7 +72,7 @@ class PanelPainter {
       const double right = std::min(x(shade.end), double(plot_.br().x));
       if (!(right > left)) continue;
       canvas_.box(
-          {int(std::floor(left)), plot_.y, std::max(2, int(std::ceil(right - left))), plot_.height},
+          {int(std::floor(left)), plot_.y, std::max(3, int(std::ceil(right - left))), plot_.height},
           rgb(shade.ink), style::kShadeOpacity);
     }
   }

@@ -69,7 +69,7 @@ std::optional<double> StepWatch::observe(double t) {
   longest_ = std::max(longest_, step);
   last_was_gap_ = step > std::max(least_gap_, 5 * median_step());
   if (last_was_gap_) keep_gap({last_, t});
-  steps_.add(t, {step});
+  steps_.add(last_, {step});
   last_ = t;
   return step;
 }

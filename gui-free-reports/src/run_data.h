@@ -62,6 +62,7 @@ class StepWatch {
   double gap_duration() const { return gap_duration_; }
   /// Steps a second while there was no gap [Hz].
   double rate() const;
+  /// Each step at its begin.
   const DecimatedTable& steps() const { return steps_; }
   /// The longest gaps, at most 64, in order of time.
   std::vector<Interval> longest_gaps() const;

@@ -519,6 +519,7 @@ Panel step_panel(const RunData& data, const StepWatch& watch, const std::string&
   Panel panel = time_panel(data, value_axis(label, "s"));
   const DecimatedTable::Rows rows = watch.steps().rows();
   panel.series.push_back(line(label, ink, rows.x, rows.columns[0]));
+  panel.series.back().mark = Mark::steps;
   panel.series.back().size = 0.9;
   panel.series.back().in_legend = false;
   panel.note =
