@@ -1,0 +1,415 @@
+#include <mrpt/obs/gnss_messages.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <type_traits>
+
+#include "foucault/core/so3.h"
+#include "foucault/core/time.h"
+#include "foucault/geodesy/wgs84.h"
+#include "foucault/rawlog/rawlog_source.h"
+#include "mrpt_convert.h"
+
+/// GPS records of MRPT to fixes and back.
+namespace foucault {
+
+namespace {
+
+namespace gnss = mrpt::obs::gnss;
+namespace position_type = mrpt::obs::gnss::nv_oem6_position_type;
+namespace solution_status = mrpt::obs::gnss::nv_oem6_solution_status;
+namespace ins_status = mrpt::obs::gnss::nv_oem6_ins_status_type;
+
+constexpr double kDegree = M_PI / 180;
+constexpr double kKnot = 1852.0 / 3600.0;
+/// Of velocities that come without one [m/s]: from a speed and a course along the ground, which
+/// leave the vertical open, or from a velocity vector.
+constexpr double kSpeedSigma = 0.2;
+constexpr double kOpenVerticalSigma = 10;
+constexpr double kVelocitySigma = 0.1;
+/// Spherical error probable of an isotropic error of sigma 1.
+constexpr double kSepPerSigma = 1.5382;
+
+template <class Message>
+const Message* message(const mrpt::obs::CObservationGPS& gps) {
+  const auto found = gps.messages.find(static_cast<gnss::gnss_message_type_t>(Message::msg_type));
+  if (found == gps.messages.end()) return nullptr;
+  return dynamic_cast<const Message*>(found->second.get());
+}
+
+Eigen::Matrix3d diagonal(double north, double east, double down) {
+  return Eigen::Vector3d(north * north, east * east, down * down).asDiagonal();
+}
+
+Geodetic geodetic(double latitude_deg, double longitude_deg, double height) {
+  return {latitude_deg * kDegree, longitude_deg * kDegree, height};
+}
+
+// NovAtel BESTPOS -------------------------------------------------------------------------------
+
+/// Table 84 of the OEM6 manual, and the types that OEM7 added. None: no position of GNSS.
+std::optional<FixQuality> quality_of_type(uint32_t type) {
+  switch (type) {
+    case position_type::L1_INT:
+    case position_type::WIDE_INT:
+    case position_type::NARROW_INT:
+    case position_type::RTK_DIRECT_INS:
+    case position_type::INS_RTKFIXED:
+      return FixQuality::fixed_rtk;
+    case position_type::FLOATCONV:
+    case position_type::WIDELANE:
+    case position_type::NARROWLANE:
+    case position_type::L1_FLOAT:
+    case position_type::IONOFREE_FLOAT:
+    case position_type::NARROW_FLOAT:
+    case position_type::INS_RTKFLOAT:
+      return FixQuality::float_rtk;
+    case position_type::OMNISTAR_HP:
+    case position_type::OMNISTAR_XP:
+    case 68:  // PPP_CONVERGING
+    case 69:  // PPP
+    case 73:  // INS_PPP_CONVERGING
+    case 74:  // INS_PPP
+    case 77:  // PPP_BASIC_CONVERGING
+    case 78:  // PPP_BASIC
+      return FixQuality::ppp;
+    case position_type::PSRDIFF:
+    case position_type::WAAS:
+    case position_type::OMNISTAR:
+    case position_type::INS_PSRDIFF:
+    case position_type::CDGPS:
+      return FixQuality::differential;
+    case position_type::SINGLE:
+    case position_type::INS_PSRSP:
+      return FixQuality::single;
+    case position_type::NONE:
+    case position_type::DOPPLER_VELOCITY:
+    case position_type::PROPAGATED:
+    case position_type::INS:
+      return std::nullopt;
+    default:
+      return FixQuality::unknown;
+  }
+}
+
+position_type::nv_position_type_t type_of_quality(FixQuality quality) {
+  switch (quality) {
+    case FixQuality::fixed_rtk:
+      return position_type::NARROW_INT;
+    case FixQuality::float_rtk:
+      return position_type::NARROW_FLOAT;
+    case FixQuality::ppp:
+      return position_type::OMNISTAR_HP;
+    case FixQuality::differential:
+      return position_type::PSRDIFF;
+    case FixQuality::single:
+      return position_type::SINGLE;
+    case FixQuality::unknown:
+      break;
+  }
+  return position_type::Reserved;
+}
+
+std::optional<GnssFix> fix_of_bestpos(const gnss::Message_NV_OEM6_BESTPOS& message) {
+  const auto fields = message.fields;  // packed: a copy, no references into it
+  if (fields.solution_stat != solution_status::SOL_COMPUTED) return std::nullopt;
+  const std::optional<FixQuality> quality = quality_of_type(fields.position_type);
+  if (!quality) return std::nullopt;
+  GnssFix fix;
+  fix.quality = *quality;
+  fix.antenna = geodetic(fields.lat, fields.lon, fields.hgt + fields.undulation);
+  fix.position_covariance = diagonal(fields.lat_sigma, fields.lon_sigma, fields.hgt_sigma);
+  return fix;
+}
+
+gnss::Message_NV_OEM6_BESTPOS bestpos_of(const GnssFix& fix) {
+  const GpsTime time = unix_to_gps(fix.t_ns);
+  const Eigen::Vector3d sigma = fix.position_covariance.diagonal().cwiseSqrt();
+  gnss::Message_NV_OEM6_BESTPOS message;
+  auto& fields = message.fields;
+  fields.header.week = static_cast<uint16_t>(time.week);
+  fields.header.ms_in_week = static_cast<uint32_t>(time.tow_ns / 1'000'000);
+  fields.solution_stat = solution_status::SOL_COMPUTED;
+  fields.position_type = type_of_quality(fix.quality);
+  fields.lat = fix.antenna.latitude / kDegree;
+  fields.lon = fix.antenna.longitude / kDegree;
+  fields.hgt = fix.antenna.height;
+  fields.undulation = 0;
+  fields.lat_sigma = static_cast<float>(sigma.x());
+  fields.lon_sigma = static_cast<float>(sigma.y());
+  fields.hgt_sigma = static_cast<float>(sigma.z());
+  return message;
+}
+
+// TopCon PZS ------------------------------------------------------------------------------------
+
+Eigen::Matrix3d ned_of_ecef(const mrpt::math::CMatrixFloat44& covariance_e,
+                            const Eigen::Matrix3d& R_e_n) {
+  Eigen::Matrix3d covariance;
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) {
+      covariance(row, column) = covariance_e(row, column);
+    }
+  }
+  const Eigen::Matrix3d turned = R_e_n.transpose() * covariance * R_e_n;
+  return 0.5 * (turned + turned.transpose());
+}
+
+mrpt::math::CMatrixFloat44 ecef_of_ned(const Eigen::Matrix3d& covariance_n,
+                                       const Eigen::Matrix3d& R_e_n) {
+  const Eigen::Matrix3d turned = R_e_n * covariance_n * R_e_n.transpose();
+  mrpt::math::CMatrixFloat44 covariance;
+  covariance.setZero();
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) {
+      covariance(row, column) = static_cast<float>(turned(row, column));
+    }
+  }
+  return covariance;
+}
+
+GnssFix fix_of_pzs(const gnss::Message_TOPCON_PZS& pzs) {
+  constexpr uint8_t kMillimetreGps = 2;
+  GnssFix fix;
+  fix.antenna = geodetic(pzs.latitude_degrees, pzs.longitude_degrees, pzs.height_meters);
+  fix.quality = pzs.Fix == kMillimetreGps ? FixQuality::fixed_rtk : FixQuality::unknown;
+  if (pzs.hasPosCov) return fix;
+  const NmeaSigma assumed = nmea_sigma(fix.quality, std::nullopt);
+  const double sep = pzs.PSigma / kSepPerSigma;
+  fix.position_covariance =
+      sep > 0 ? diagonal(sep, sep, sep)
+              : diagonal(assumed.horizontal, assumed.horizontal, assumed.vertical);
+  return fix;
+}
+
+void add_pzs_position_covariance(const gnss::Message_TOPCON_PZS& pzs, GnssFix& fix) {
+  if (!pzs.hasPosCov) return;
+  fix.position_covariance =
+      ned_of_ecef(pzs.pos_covariance, wgs84::R_e_n(fix.antenna.latitude, fix.antenna.longitude));
+}
+
+void add_pzs_velocity(const gnss::Message_TOPCON_PZS& pzs, GnssFix& fix) {
+  const Eigen::Matrix3d R_e_n = wgs84::R_e_n(fix.antenna.latitude, fix.antenna.longitude);
+  const Eigen::Vector3d v_e(pzs.cartesian_vx, pzs.cartesian_vy, pzs.cartesian_vz);
+  fix.velocity_n = R_e_n.transpose() * v_e;
+  fix.velocity_covariance = pzs.hasVelCov
+                                ? ned_of_ecef(pzs.vel_covariance, R_e_n)
+                                : diagonal(kVelocitySigma, kVelocitySigma, kVelocitySigma);
+}
+
+bool is_diagonal(const Eigen::Matrix3d& matrix) {
+  return matrix.isDiagonal(std::numeric_limits<double>::epsilon());
+}
+
+gnss::Message_TOPCON_PZS pzs_of(const GnssFix& fix) {
+  const Eigen::Matrix3d R_e_n = wgs84::R_e_n(fix.antenna.latitude, fix.antenna.longitude);
+  const Eigen::Vector3d p_e = wgs84::geodetic_to_ecef(fix.antenna);
+  gnss::Message_TOPCON_PZS pzs;
+  pzs.latitude_degrees = fix.antenna.latitude / kDegree;
+  pzs.longitude_degrees = fix.antenna.longitude / kDegree;
+  pzs.height_meters = fix.antenna.height;
+  pzs.RTK_height_meters = fix.antenna.height;
+  pzs.Fix = 1;
+  pzs.hasPosCov = !is_diagonal(fix.position_covariance);
+  pzs.pos_covariance = ecef_of_ned(fix.position_covariance, R_e_n);
+  pzs.hasCartesianPosVel = fix.velocity_n.has_value();
+  pzs.hasVelCov = fix.velocity_n.has_value();
+  pzs.vel_covariance = ecef_of_ned(fix.velocity_covariance, R_e_n);
+  const Eigen::Vector3d v_e = R_e_n * fix.velocity_n.value_or(Eigen::Vector3d::Zero());
+  pzs.cartesian_x = p_e.x();
+  pzs.cartesian_y = p_e.y();
+  pzs.cartesian_z = p_e.z();
+  pzs.cartesian_vx = v_e.x();
+  pzs.cartesian_vy = v_e.y();
+  pzs.cartesian_vz = v_e.z();
+  return pzs;
+}
+
+// NMEA ------------------------------------------------------------------------------------------
+
+/// The fix quality of GGA. None: no fix, or dead reckoning.
+std::optional<FixQuality> quality_of_nmea(int indicator) {
+  switch (indicator) {
+    case 0:
+    case 6:
+      return std::nullopt;
+    case 1:
+    case 3:
+      return FixQuality::single;
+    case 2:
+    case 9:
+      return FixQuality::differential;
+    case 4:
+      return FixQuality::fixed_rtk;
+    case 5:
+      return FixQuality::float_rtk;
+    default:
+      return FixQuality::unknown;
+  }
+}
+
+std::optional<GnssFix> fix_of_gga(const gnss::Message_NMEA_GGA& message) {
+  const auto fields = message.fields;
+  const std::optional<FixQuality> quality = quality_of_nmea(fields.fix_quality);
+  if (!quality) return std::nullopt;
+  const std::optional<double> hdop =
+      fields.thereis_HDOP ? std::optional<double>(fields.HDOP) : std::nullopt;
+  const NmeaSigma sigma = nmea_sigma(*quality, hdop);
+  GnssFix fix;
+  fix.quality = *quality;
+  fix.antenna = geodetic(fields.latitude_degrees, fields.longitude_degrees,
+                         fields.altitude_meters + fields.geoidal_distance);
+  fix.position_covariance = diagonal(sigma.horizontal, sigma.horizontal, sigma.vertical);
+  return fix;
+}
+
+void add_ground_velocity(double speed, double course, GnssFix& fix) {
+  fix.velocity_n = Eigen::Vector3d(speed * std::cos(course), speed * std::sin(course), 0);
+  fix.velocity_covariance = diagonal(kSpeedSigma, kSpeedSigma, kOpenVerticalSigma);
+}
+
+void add_nmea_velocity(const mrpt::obs::CObservationGPS& gps, GnssFix& fix) {
+  const auto* rmc = message<gnss::Message_NMEA_RMC>(gps);
+  const auto* vtg = message<gnss::Message_NMEA_VTG>(gps);
+  if (rmc != nullptr && rmc->fields.validity_char == 'A') {
+    add_ground_velocity(rmc->fields.speed_knots * kKnot, rmc->fields.direction_degrees * kDegree,
+                        fix);
+  } else if (rmc == nullptr && vtg != nullptr) {
+    add_ground_velocity(vtg->fields.ground_speed_knots * kKnot, vtg->fields.true_track * kDegree,
+                        fix);
+  }
+}
+
+// Receivers of newer MRPT -----------------------------------------------------------------------
+
+template <class Gps, class = void>
+struct HasCovarianceEnu : std::false_type {};
+template <class Gps>
+struct HasCovarianceEnu<Gps, std::void_t<decltype(std::declval<Gps>().covariance_enu)>>
+    : std::true_type {};
+
+/// MRPT from 2.11.12 on keeps a covariance East-North-Up beside the messages.
+template <class Gps>
+void add_covariance_enu(const Gps& gps, GnssFix& fix) {
+  if constexpr (HasCovarianceEnu<Gps>::value) {
+    if (!gps.covariance_enu) return;
+    constexpr int kEnuOfNed[] = {1, 0, 2};
+    constexpr double kSign[] = {1, 1, -1};
+    for (int row = 0; row < 3; ++row) {
+      for (int column = 0; column < 3; ++column) {
+        fix.position_covariance(row, column) =
+            kSign[row] * kSign[column] * (*gps.covariance_enu)(kEnuOfNed[row], kEnuOfNed[column]);
+      }
+    }
+  }
+}
+
+std::optional<GnssFix> position_of(const mrpt::obs::CObservationGPS& gps) {
+  if (const auto* bestpos = message<gnss::Message_NV_OEM6_BESTPOS>(gps)) {
+    return fix_of_bestpos(*bestpos);
+  }
+  if (const auto* pzs = message<gnss::Message_TOPCON_PZS>(gps)) return fix_of_pzs(*pzs);
+  if (const auto* gga = message<gnss::Message_NMEA_GGA>(gps)) return fix_of_gga(*gga);
+  return std::nullopt;
+}
+
+}  // namespace
+
+NmeaSigma nmea_sigma(FixQuality quality, std::optional<double> hdop) {
+  double horizontal = 1.7;
+  switch (quality) {
+    case FixQuality::fixed_rtk:
+      horizontal = 0.015;
+      break;
+    case FixQuality::float_rtk:
+      horizontal = 0.25;
+      break;
+    case FixQuality::ppp:
+      horizontal = 0.1;
+      break;
+    case FixQuality::differential:
+      horizontal = 0.7;
+      break;
+    case FixQuality::single:
+    case FixQuality::unknown:
+      break;
+  }
+  const double dilution = hdop ? std::max(*hdop, 0.5) : 1.0;
+  return {horizontal * dilution, 2 * horizontal * dilution};
+}
+
+namespace rawlog {
+
+std::optional<GnssFix> decode_fix(const mrpt::obs::CObservationGPS& gps, int64_t t_ns,
+                                  bool with_velocity) {
+  std::optional<GnssFix> fix = position_of(gps);
+  if (!fix) return std::nullopt;
+  fix->t_ns = t_ns;
+  add_covariance_enu(gps, *fix);
+  const auto* pzs = message<gnss::Message_TOPCON_PZS>(gps);
+  if (pzs != nullptr) add_pzs_position_covariance(*pzs, *fix);
+  if (!with_velocity) return fix;
+  if (pzs != nullptr && pzs->hasCartesianPosVel) {
+    add_pzs_velocity(*pzs, *fix);
+  } else {
+    add_nmea_velocity(gps, *fix);
+  }
+  return fix;
+}
+
+void encode_fix(const GnssFix& fix, mrpt::obs::CObservationGPS& gps) {
+  gps.messages.clear();
+  gps.has_satellite_timestamp = true;
+  gps.setMsg(bestpos_of(fix));
+  if (fix.velocity_n || !is_diagonal(fix.position_covariance)) gps.setMsg(pzs_of(fix));
+}
+
+std::optional<ReferencePose> decode_reference(const mrpt::obs::CObservationGPS& gps, int64_t t_ns) {
+  const auto* ins = message<gnss::Message_NV_OEM6_INSPVAS>(gps);
+  if (ins == nullptr) return std::nullopt;
+  const auto fields = ins->fields;
+  ReferencePose pose;
+  pose.t_ns = t_ns;
+  pose.position = geodetic(fields.lat, fields.lon, fields.hgt);
+  const Eigen::Vector3d velocity(fields.vel_north, fields.vel_east, -fields.vel_up);
+  const Eigen::Vector3d angles(fields.roll, fields.pitch, fields.azimuth);
+  if (velocity.allFinite()) pose.velocity_n = velocity;
+  // NovAtel turns by azimuth, pitch, roll, in this order, as forward-right-down does.
+  if (angles.allFinite()) {
+    pose.q_n_v =
+        so3::from_euler({angles.x() * kDegree, angles.y() * kDegree, angles.z() * kDegree});
+  }
+  return pose;
+}
+
+void encode_reference(const ReferencePose& pose, mrpt::obs::CObservationGPS& gps) {
+  constexpr double kAbsent = std::numeric_limits<double>::quiet_NaN();
+  const GpsTime time = unix_to_gps(pose.t_ns);
+  const Eigen::Vector3d velocity = pose.velocity_n.value_or(Eigen::Vector3d::Constant(kAbsent));
+  const so3::Euler euler =
+      pose.q_n_v ? so3::to_euler(*pose.q_n_v) : so3::Euler{kAbsent, kAbsent, kAbsent};
+  gnss::Message_NV_OEM6_INSPVAS message;
+  auto& fields = message.fields;
+  fields.header.week = static_cast<uint16_t>(time.week);
+  fields.header.ms_in_week = static_cast<uint32_t>(time.tow_ns / 1'000'000);
+  fields.week = static_cast<uint32_t>(time.week);
+  fields.seconds_in_week = static_cast<double>(time.tow_ns) * 1e-9;
+  fields.lat = pose.position.latitude / kDegree;
+  fields.lon = pose.position.longitude / kDegree;
+  fields.hgt = pose.position.height;
+  fields.vel_north = velocity.x();
+  fields.vel_east = velocity.y();
+  fields.vel_up = -velocity.z();
+  fields.roll = euler.roll / kDegree;
+  fields.pitch = euler.pitch / kDegree;
+  fields.azimuth = euler.heading / kDegree;
+  fields.ins_status = ins_status::INS_SOLUTION_GOOD;
+  gps.messages.clear();
+  gps.has_satellite_timestamp = true;
+  gps.setMsg(message);
+}
+
+}  // namespace rawlog
+
+}  // namespace foucault

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <mrpt/obs/CObservationGPS.h>
+#include <mrpt/obs/CObservationIMU.h>
+#include <mrpt/obs/CObservationOdometry.h>
+#include <mrpt/obs/CObservationRobotPose.h>
+#include <mrpt/poses/CPose3D.h>
+#include <mrpt/system/datetime.h>
+
+#include <Eigen/Geometry>
+#include <optional>
+#include <string>
+
+#include "foucault/core/measurement.h"
+#include "foucault/inertial/increments.h"
+
+/// Between MRPT's values and ours: the one place where stamps change their epoch and frames turn
+/// from forward-left-up to forward-right-down.
+namespace foucault::rawlog {
+
+/// MRPT counts 100 ns since 1601. None for MRPT's invalid stamp and beyond the range of ours.
+std::optional<int64_t> from_mrpt(mrpt::system::TTimeStamp t);
+mrpt::system::TTimeStamp to_mrpt(int64_t t_ns);
+/// Nearest stamp that MRPT can hold.
+int64_t quantized(int64_t t_ns);
+
+/// Pose of a sensor in the vehicle v, forward-right-down. The sensor's own axes stay what they are.
+struct SensorPose {
+  Eigen::Quaterniond q_v_s = Eigen::Quaterniond::Identity();
+  Eigen::Vector3d p_v_s = Eigen::Vector3d::Zero();
+};
+SensorPose from_mrpt(const mrpt::poses::CPose3D& pose_flu);
+mrpt::poses::CPose3D to_mrpt(const SensorPose& pose);
+
+/// The rotation between two frames that are both forward-left-up, between their
+/// forward-right-down counterparts (and back: it is its own inverse).
+Eigen::Quaterniond flip_both(const Eigen::Quaterniond& q);
+
+/// None if the gyroscope or the accelerometer is missing.
+std::optional<ImuSample> decode_imu(const mrpt::obs::CObservationIMU& imu, int64_t t_ns);
+void encode_imu(const ImuSample& sample, mrpt::obs::CObservationIMU& imu);
+
+/// The position that a GPS record holds, without lever arm; none if it holds none.
+std::optional<GnssFix> decode_fix(const mrpt::obs::CObservationGPS& gps, int64_t t_ns,
+                                  bool with_velocity);
+/// Messages of a fix; stamp, label and pose are the caller's.
+void encode_fix(const GnssFix& fix, mrpt::obs::CObservationGPS& gps);
+
+/// The INSPVAS of a reference system; of its own place and axes (forward-right-down).
+std::optional<ReferencePose> decode_reference(const mrpt::obs::CObservationGPS& gps, int64_t t_ns);
+void encode_reference(const ReferencePose& pose, mrpt::obs::CObservationGPS& gps);
+
+/// The same from a pose in East-North-Up at `origin`.
+ReferencePose decode_reference(const mrpt::obs::CObservationRobotPose& pose, const Geodetic& origin,
+                               int64_t t_ns);
+
+/// Moves the pose of a sensor `from` to the IMU, on the vehicle's axes. The velocity is taken over
+/// as it is: the arm between the two turns slowly.
+ReferencePose moved_to_imu(const ReferencePose& pose, const SensorPose& from,
+                           const Eigen::Vector3d& p_v_imu);
+
+/// A stamp for messages: date and time of day, UTC, to the millisecond.
+std::string describe_stamp(int64_t t_ns);
+
+}  // namespace foucault::rawlog

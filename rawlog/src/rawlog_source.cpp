@@ -1,0 +1,405 @@
+#include "foucault/rawlog/rawlog_source.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <limits>
+
+#include "foucault/core/error.h"
+#include "foucault/core/time.h"
+#include "foucault/inertial/increments.h"
+#include "mrpt_convert.h"
+#include "rawlog_stream.h"
+
+namespace foucault {
+
+using rawlog::LoggedObservation;
+
+void RawlogOptions::fields(ConfigFields& f) {
+  f.text("imu_label", imu_label, {}, "sensor label of the IMU; empty: the first one");
+  f.text("gnss_label", gnss_label, {},
+         "sensor label of the GNSS receiver; empty: the first one with a position");
+  f.text("reference_label", reference_label, {}, "sensor label of the reference trajectory");
+  f.number("reorder_s", reorder_s, kNotNegative, "fixes may come this late [s]");
+  f.flag("gnss_velocity", gnss_velocity, "read the receiver's velocities");
+}
+
+namespace {
+
+/// What must be known of a log before its first measurement.
+struct Overview {
+  std::string imu_label;
+  rawlog::SensorPose imu;
+  std::string gnss_label;
+  rawlog::SensorPose antenna;
+  Geodetic first_fix;
+};
+
+const mrpt::obs::CObservationGPS* as_gps(const LoggedObservation& logged) {
+  return dynamic_cast<const mrpt::obs::CObservationGPS*>(logged.observation.get());
+}
+
+bool label_fits(const std::string& wanted, const std::string& label) {
+  return wanted.empty() || wanted == label;
+}
+
+/// Reads ahead until the first IMU sample and the first fix.
+class OverviewScan {
+ public:
+  OverviewScan(const std::string& path, const RawlogOptions& options)
+      : path_(path), options_(options) {}
+
+  Overview run() {
+    rawlog::RawlogStream stream(path_);
+    while (!(imu_found_ && gnss_found_)) {
+      const std::optional<LoggedObservation> logged = stream.next();
+      if (!logged) throw DataError(missing());
+      look_at(*logged);
+    }
+    return overview_;
+  }
+
+ private:
+  void look_at(const LoggedObservation& logged) {
+    const std::string& label = logged.observation->sensorLabel;
+    if (const auto* imu =
+            dynamic_cast<const mrpt::obs::CObservationIMU*>(logged.observation.get())) {
+      ++imus_;
+      if (!imu_found_ && label_fits(options_.imu_label, label)) take_imu(*imu);
+    } else if (const auto* gps = as_gps(logged)) {
+      if (label == options_.reference_label) return;
+      ++gps_;
+      if (!gnss_found_ && label_fits(options_.gnss_label, label)) take_fix(*gps);
+    }
+  }
+
+  void take_imu(const mrpt::obs::CObservationIMU& imu) {
+    if (!rawlog::decode_imu(imu, 0)) return;
+    overview_.imu_label = imu.sensorLabel;
+    overview_.imu = rawlog::from_mrpt(imu.sensorPose);
+    imu_found_ = true;
+  }
+
+  void take_fix(const mrpt::obs::CObservationGPS& gps) {
+    const std::optional<GnssFix> fix = rawlog::decode_fix(gps, 0, false);
+    if (!fix) return;
+    overview_.gnss_label = gps.sensorLabel;
+    overview_.antenna = rawlog::from_mrpt(gps.sensorPose);
+    overview_.first_fix = fix->antenna;
+    gnss_found_ = true;
+  }
+
+  std::string missing() const {
+    const std::string imu_wish =
+        options_.imu_label.empty() ? "" : fmt::format(" labelled '{}'", options_.imu_label);
+    const std::string gnss_wish =
+        options_.gnss_label.empty() ? "" : fmt::format(" labelled '{}'", options_.gnss_label);
+    if (!imu_found_) {
+      return fmt::format(
+          "'{}' has no IMU: {} CObservationIMU, none{} with gyroscope and "
+          "accelerometer; see `foucault info`",
+          path_, imus_, imu_wish);
+    }
+    return fmt::format(
+        "'{}' has no GNSS: {} CObservationGPS, none{} with a valid position "
+        "(BESTPOS, PZS or GGA); see `foucault info`",
+        path_, gps_, gnss_wish);
+  }
+
+  std::string path_;
+  RawlogOptions options_;
+  Overview overview_;
+  bool imu_found_ = false;
+  bool gnss_found_ = false;
+  int64_t imus_ = 0;
+  int64_t gps_ = 0;
+};
+
+/// First and last stamp of a stream.
+struct Span {
+  int64_t first_ns = std::numeric_limits<int64_t>::max();
+  int64_t last_ns = std::numeric_limits<int64_t>::min();
+
+  void add(int64_t t_ns) {
+    first_ns = std::min(first_ns, t_ns);
+    last_ns = std::max(last_ns, t_ns);
+  }
+  bool overlaps(const Span& other) const {
+    return first_ns <= other.last_ns && other.first_ns <= last_ns;
+  }
+};
+
+bool finite(const Geodetic& position) {
+  return std::isfinite(position.latitude) && std::isfinite(position.longitude) &&
+         std::isfinite(position.height);
+}
+
+bool finite(const GnssFix& fix) {
+  return finite(fix.antenna) && fix.position_covariance.allFinite() &&
+         (!fix.velocity_n || (fix.velocity_n->allFinite() && fix.velocity_covariance.allFinite()));
+}
+
+bool same(const ImuSample& a, const ImuSample& b) {
+  return a.t_ns == b.t_ns && a.gyro_b == b.gyro_b && a.accel_b == b.accel_b;
+}
+
+}  // namespace
+
+class RawlogSource::Impl {
+ public:
+  Impl(const std::string& path, SampleKind samples, const RawlogOptions& options)
+      : path_(path),
+        options_(options),
+        reorder_ns_(nanoseconds(options.reorder_s)),
+        overview_(OverviewScan(path, options).run()),
+        mounting_{overview_.imu.q_v_s},
+        lever_arm_(lever_arm_to(overview_.antenna)),
+        stream_(path),
+        incrementer_(samples) {}
+
+  std::optional<Measurement> next() {
+    while (!over_ && !settled()) read_one();
+    return take_earliest();
+  }
+
+  std::vector<Notice> notices() const;
+
+  const Mounting& mounting() const { return mounting_; }
+  const Eigen::Vector3d& lever_arm() const { return lever_arm_; }
+  const Overview& overview() const { return overview_; }
+  const SourceCounts& counts() const { return counts_; }
+  double progress() const { return stream_.progress(); }
+
+ private:
+  Eigen::Vector3d lever_arm_to(const rawlog::SensorPose& antenna) const {
+    return overview_.imu.q_v_s.conjugate() * (antenna.p_v_s - overview_.imu.p_v_s);
+  }
+
+  /// The earliest measurement can no longer be preceded by one that is still to come.
+  bool settled() const;
+  std::optional<Measurement> take_earliest();
+  void read_one();
+  void dispatch(const LoggedObservation& logged, int64_t t_ns);
+  void take_imu(const mrpt::obs::CObservationIMU& imu, int64_t record, int64_t t_ns);
+  void take_gps(const mrpt::obs::CObservationGPS& gps, int64_t record, int64_t t_ns);
+  void take_reference(const ReferencePose& pose, const mrpt::poses::CPose3D& sensor_pose,
+                      int64_t record);
+  void take_odometry(const mrpt::obs::CObservationOdometry& odometry, int64_t record, int64_t t_ns);
+  void add(const Measurement& measurement);
+  void skip(const LoggedObservation& logged, const std::string& reason = {});
+  void skip(const std::string& name) { ++counts_.skipped[name]; }
+  void check_overlap() const;
+  [[noreturn]] void fail(int64_t record, int64_t t_ns, const std::string& what) const;
+
+  std::string path_;
+  RawlogOptions options_;
+  int64_t reorder_ns_;
+  Overview overview_;
+  Mounting mounting_;
+  Eigen::Vector3d lever_arm_;
+  rawlog::RawlogStream stream_;
+  Incrementer incrementer_;
+  SourceCounts counts_;
+
+  std::optional<ImuSample> last_sample_;
+  std::deque<ImuIncrement> increments_;
+  std::multimap<int64_t, Measurement> others_;
+  int64_t newest_imu_ns_ = std::numeric_limits<int64_t>::min();
+  int64_t released_ns_ = std::numeric_limits<int64_t>::min();
+  int64_t released_increment_ns_ = std::numeric_limits<int64_t>::min();
+  std::optional<int64_t> first_late_ns_;
+  Span imu_span_;
+  Span fix_span_;
+  bool over_ = false;
+};
+
+bool RawlogSource::Impl::settled() const {
+  int64_t earliest_ns = std::numeric_limits<int64_t>::max();
+  if (!increments_.empty()) earliest_ns = increments_.front().t_end_ns;
+  if (!others_.empty()) earliest_ns = std::min(earliest_ns, others_.begin()->first);
+  return newest_imu_ns_ != std::numeric_limits<int64_t>::min() &&
+         earliest_ns <= newest_imu_ns_ - reorder_ns_;
+}
+
+std::optional<Measurement> RawlogSource::Impl::take_earliest() {
+  const bool other_first =
+      !others_.empty() &&
+      (increments_.empty() || others_.begin()->first <= increments_.front().t_end_ns);
+  if (other_first) {
+    Measurement measurement = std::move(others_.begin()->second);
+    released_ns_ = others_.begin()->first;
+    others_.erase(others_.begin());
+    return measurement;
+  }
+  if (increments_.empty()) return std::nullopt;
+  const ImuIncrement increment = increments_.front();
+  increments_.pop_front();
+  released_ns_ = increment.t_end_ns;
+  released_increment_ns_ = increment.t_end_ns;
+  return increment;
+}
+
+void RawlogSource::Impl::read_one() {
+  const std::optional<LoggedObservation> logged = stream_.next();
+  if (!logged) {
+    over_ = true;
+    check_overlap();
+    return;
+  }
+  const std::optional<int64_t> t_ns = rawlog::from_mrpt(logged->observation->timestamp);
+  if (t_ns) {
+    dispatch(*logged, *t_ns);
+  } else {
+    skip(*logged, "no stamp");
+  }
+}
+
+void RawlogSource::Impl::dispatch(const LoggedObservation& logged, int64_t t_ns) {
+  const mrpt::obs::CObservation* observation = logged.observation.get();
+  if (const auto* imu = dynamic_cast<const mrpt::obs::CObservationIMU*>(observation)) {
+    return take_imu(*imu, logged.record, t_ns);
+  }
+  if (const auto* gps = dynamic_cast<const mrpt::obs::CObservationGPS*>(observation)) {
+    return take_gps(*gps, logged.record, t_ns);
+  }
+  if (const auto* odometry = dynamic_cast<const mrpt::obs::CObservationOdometry*>(observation)) {
+    return take_odometry(*odometry, logged.record, t_ns);
+  }
+  const auto* pose = dynamic_cast<const mrpt::obs::CObservationRobotPose*>(observation);
+  if (pose != nullptr && pose->sensorLabel == options_.reference_label) {
+    return take_reference(rawlog::decode_reference(*pose, overview_.first_fix, t_ns),
+                          pose->sensorPose, logged.record);
+  }
+  skip(logged);
+}
+
+void RawlogSource::Impl::take_imu(const mrpt::obs::CObservationIMU& imu, int64_t record,
+                                  int64_t t_ns) {
+  if (imu.sensorLabel != overview_.imu_label) return skip("CObservationIMU (another label)");
+  const std::optional<ImuSample> sample = rawlog::decode_imu(imu, t_ns);
+  if (!sample) return skip("CObservationIMU (no gyroscope or no accelerometer)");
+  if (!sample->gyro_b.allFinite() || !sample->accel_b.allFinite()) {
+    fail(record, t_ns, "an IMU value is not finite; remove the record");
+  }
+  if (last_sample_ && same(*sample, *last_sample_)) {
+    ++counts_.imu_duplicates;
+    return;
+  }
+  if (last_sample_ && t_ns <= last_sample_->t_ns) {
+    fail(record, t_ns,
+         fmt::format("the IMU stamp does not come after the one before it, {}; sort the log",
+                     rawlog::describe_stamp(last_sample_->t_ns)));
+  }
+  last_sample_ = sample;
+  newest_imu_ns_ = t_ns;
+  imu_span_.add(t_ns);
+  ++counts_.imu_samples;
+  if (const std::optional<ImuIncrement> increment = incrementer_.add(*sample)) {
+    increments_.push_back(*increment);
+  }
+}
+
+void RawlogSource::Impl::take_gps(const mrpt::obs::CObservationGPS& gps, int64_t record,
+                                  int64_t t_ns) {
+  if (gps.sensorLabel == options_.reference_label) {
+    const std::optional<ReferencePose> pose = rawlog::decode_reference(gps, t_ns);
+    if (!pose) return skip("CObservationGPS (reference without INSPVAS)");
+    return take_reference(*pose, gps.sensorPose, record);
+  }
+  if (gps.sensorLabel != overview_.gnss_label) return skip("CObservationGPS (another label)");
+  std::optional<GnssFix> fix = rawlog::decode_fix(gps, t_ns, options_.gnss_velocity);
+  if (!fix) return skip("CObservationGPS (no position)");
+  if (!finite(*fix)) fail(record, t_ns, "a GNSS value is not finite; remove the record");
+  fix->p_b_a = lever_arm_to(rawlog::from_mrpt(gps.sensorPose));
+  fix_span_.add(t_ns);
+  ++counts_.fixes;
+  add(*fix);
+}
+
+void RawlogSource::Impl::take_reference(const ReferencePose& pose,
+                                        const mrpt::poses::CPose3D& sensor_pose, int64_t record) {
+  if (!finite(pose.position)) {
+    fail(record, pose.t_ns, "the reference position is not finite; remove the record");
+  }
+  ++counts_.references;
+  add(rawlog::moved_to_imu(pose, rawlog::from_mrpt(sensor_pose), overview_.imu.p_v_s));
+}
+
+void RawlogSource::Impl::take_odometry(const mrpt::obs::CObservationOdometry& odometry,
+                                       int64_t record, int64_t t_ns) {
+  if (!odometry.hasVelocities) return skip("CObservationOdometry (no velocity)");
+  if (!std::isfinite(odometry.velocityLocal.vx)) {
+    fail(record, t_ns, "the wheel speed is not finite; remove the record");
+  }
+  ++counts_.wheel_speeds;
+  add(WheelSpeed{t_ns, odometry.velocityLocal.vx});
+}
+
+void RawlogSource::Impl::add(const Measurement& measurement) {
+  const int64_t t_ns = stamp(measurement);
+  if (t_ns < released_ns_ || t_ns <= released_increment_ns_) {
+    ++counts_.late;
+    if (!first_late_ns_) first_late_ns_ = t_ns;
+    return;
+  }
+  others_.emplace(t_ns, measurement);
+}
+
+void RawlogSource::Impl::skip(const LoggedObservation& logged, const std::string& reason) {
+  const std::string name = rawlog::class_name(*logged.observation);
+  skip(reason.empty() ? name : fmt::format("{} ({})", name, reason));
+}
+
+void RawlogSource::Impl::check_overlap() const {
+  if (counts_.imu_samples == 0 || counts_.fixes == 0 || imu_span_.overlaps(fix_span_)) return;
+  throw DataError(fmt::format(
+      "'{}': IMU ({} to {}) and GNSS ({} to {}) do not overlap; check the time systems of the two",
+      path_, rawlog::describe_stamp(imu_span_.first_ns), rawlog::describe_stamp(imu_span_.last_ns),
+      rawlog::describe_stamp(fix_span_.first_ns), rawlog::describe_stamp(fix_span_.last_ns)));
+}
+
+void RawlogSource::Impl::fail(int64_t record, int64_t t_ns, const std::string& what) const {
+  throw DataError(
+      fmt::format("'{}': record {} at {}: {}", path_, record, rawlog::describe_stamp(t_ns), what));
+}
+
+std::vector<Notice> RawlogSource::Impl::notices() const {
+  std::vector<Notice> notices;
+  if (counts_.late > 0) {
+    notices.push_back(
+        {*first_late_ns_, NoticeKind::skipped,
+         fmt::format("{} records came more than {:g} s late and were left out, the "
+                     "first of {}",
+                     counts_.late, options_.reorder_s, rawlog::describe_stamp(*first_late_ns_))});
+  }
+  const int64_t begin_ns = counts_.imu_samples > 0 ? imu_span_.first_ns : 0;
+  if (counts_.imu_duplicates > 0) {
+    notices.push_back({begin_ns, NoticeKind::skipped,
+                       fmt::format("{} IMU samples repeat the one before them and were left out",
+                                   counts_.imu_duplicates)});
+  }
+  for (const auto& [name, count] : counts_.skipped) {
+    notices.push_back(
+        {begin_ns, NoticeKind::skipped, fmt::format("{} x {} not used", count, name)});
+  }
+  return notices;
+}
+
+RawlogSource::RawlogSource(const std::string& path, SampleKind samples,
+                           const RawlogOptions& options)
+    : impl_(std::make_unique<Impl>(path, samples, options)) {}
+RawlogSource::~RawlogSource() = default;
+RawlogSource::RawlogSource(RawlogSource&&) noexcept = default;
+
+std::optional<Measurement> RawlogSource::next() { return impl_->next(); }
+const Mounting& RawlogSource::mounting() const { return impl_->mounting(); }
+double RawlogSource::progress() const { return impl_->progress(); }
+const Eigen::Vector3d& RawlogSource::lever_arm() const { return impl_->lever_arm(); }
+const std::string& RawlogSource::imu_label() const { return impl_->overview().imu_label; }
+const std::string& RawlogSource::gnss_label() const { return impl_->overview().gnss_label; }
+const SourceCounts& RawlogSource::counts() const { return impl_->counts(); }
+std::vector<Notice> RawlogSource::notices() const { return impl_->notices(); }
+
+}  // namespace foucault

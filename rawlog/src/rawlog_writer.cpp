@@ -1,0 +1,150 @@
+#include "foucault/rawlog/rawlog_writer.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <optional>
+
+#include "files.h"
+#include "foucault/core/error.h"
+#include "gz_archive.h"
+#include "mrpt_convert.h"
+
+namespace foucault {
+
+int64_t stamp(const Record& record) {
+  return std::visit([](const auto& value) { return stamp(value); }, record);
+}
+
+namespace {
+
+bool finite(const Geodetic& position) {
+  return std::isfinite(position.latitude) && std::isfinite(position.longitude) &&
+         std::isfinite(position.height);
+}
+
+void require(bool ok, const char* what, int64_t t_ns) {
+  if (ok) return;
+  throw DataError(fmt::format("{} at {} is not finite; remove it from the input", what,
+                              rawlog::describe_stamp(t_ns)));
+}
+
+/// Increment over the interval between the stamps as MRPT holds them.
+ImuSample mean_rates(const ImuIncrement& increment) {
+  const int64_t begin_ns = rawlog::quantized(increment.t_begin_ns);
+  const int64_t end_ns = rawlog::quantized(increment.t_end_ns);
+  if (end_ns <= begin_ns) {
+    throw DataError(
+        fmt::format("the IMU interval that ends at {} is shorter than 100 ns; remove it",
+                    rawlog::describe_stamp(increment.t_end_ns)));
+  }
+  const double dt = static_cast<double>(end_ns - begin_ns) * 1e-9;
+  return {end_ns, increment.dtheta_b / dt, increment.dvel_b / dt};
+}
+
+}  // namespace
+
+class RawlogWriter::Impl {
+ public:
+  Impl(const std::string& path, const Mounting& mounting)
+      : file_(path), archive_(file_.temporary()), mounting_(mounting) {
+    imu_.sensorLabel = "IMU";
+    imu_.sensorPose = rawlog::to_mrpt({mounting.q_v_b, Eigen::Vector3d::Zero()});
+    gnss_.sensorLabel = "GNSS";
+    reference_.sensorLabel = "REFERENCE";
+    odometry_.sensorLabel = "ODOMETRY";
+    odometry_.hasVelocities = true;
+  }
+
+  void write(const ImuSample& sample) {
+    require(sample.gyro_b.allFinite() && sample.accel_b.allFinite(), "the IMU sample", sample.t_ns);
+    rawlog::encode_imu(sample, imu_);
+    archive_.WriteObject(imu_);
+    imu_begun_ = true;
+  }
+
+  void write(const ImuIncrement& increment) {
+    const ImuSample sample = mean_rates(increment);
+    if (!imu_begun_) write(ImuSample{increment.t_begin_ns, sample.gyro_b, sample.accel_b});
+    write(sample);
+  }
+
+  void write(const GnssFix& fix) {
+    require(finite(fix.antenna) && fix.position_covariance.allFinite() &&
+                (!fix.velocity_n ||
+                 (fix.velocity_n->allFinite() && fix.velocity_covariance.allFinite())) &&
+                fix.p_b_a.allFinite(),
+            "the GNSS fix", fix.t_ns);
+    if (!lever_arm_ || *lever_arm_ != fix.p_b_a) set_lever_arm(fix.p_b_a);
+    gnss_.timestamp = rawlog::to_mrpt(fix.t_ns);
+    gnss_.originalReceivedTimestamp = gnss_.timestamp;
+    rawlog::encode_fix(fix, gnss_);
+    archive_.WriteObject(gnss_);
+  }
+
+  void write(const ReferencePose& pose) {
+    require(finite(pose.position), "the reference pose", pose.t_ns);
+    reference_.timestamp = rawlog::to_mrpt(pose.t_ns);
+    reference_.originalReceivedTimestamp = reference_.timestamp;
+    rawlog::encode_reference(pose, reference_);
+    archive_.WriteObject(reference_);
+  }
+
+  void write(const WheelSpeed& speed) {
+    require(std::isfinite(speed.forward), "the wheel speed", speed.t_ns);
+    odometry_.timestamp = rawlog::to_mrpt(speed.t_ns);
+    odometry_.velocityLocal.vx = speed.forward;
+    archive_.WriteObject(odometry_);
+  }
+
+  void finish() {
+    archive_.close();
+    file_.commit();
+  }
+
+ private:
+  void set_lever_arm(const Eigen::Vector3d& p_b_a) {
+    const Eigen::Quaterniond forward_left_up(0, 1, 0, 0);  // an antenna has no axes of its own
+    gnss_.sensorPose = rawlog::to_mrpt({forward_left_up, mounting_.q_v_b * p_b_a});
+    lever_arm_ = p_b_a;
+  }
+
+  rawlog::PendingFile file_;
+  rawlog::GzWriteArchive archive_;
+  Mounting mounting_;
+  mrpt::obs::CObservationIMU imu_;
+  mrpt::obs::CObservationGPS gnss_;
+  mrpt::obs::CObservationGPS reference_;
+  mrpt::obs::CObservationOdometry odometry_;
+  std::optional<Eigen::Vector3d> lever_arm_;
+  bool imu_begun_ = false;
+};
+
+RawlogWriter::RawlogWriter(const std::string& path, const Mounting& mounting)
+    : impl_(std::make_unique<Impl>(path, mounting)) {}
+RawlogWriter::~RawlogWriter() = default;
+RawlogWriter::RawlogWriter(RawlogWriter&&) noexcept = default;
+
+void RawlogWriter::write(const ImuSample& sample) { impl_->write(sample); }
+void RawlogWriter::write(const ImuIncrement& increment) { impl_->write(increment); }
+void RawlogWriter::write(const GnssFix& fix) { impl_->write(fix); }
+void RawlogWriter::write(const ReferencePose& pose) { impl_->write(pose); }
+void RawlogWriter::write(const WheelSpeed& speed) { impl_->write(speed); }
+
+void RawlogWriter::write(const Record& record) {
+  std::visit([this](const auto& value) { impl_->write(value); }, record);
+}
+
+void RawlogWriter::write(const Measurement& measurement) {
+  std::visit(
+      [this](const auto& value) {
+        if constexpr (!std::is_same_v<std::decay_t<decltype(value)>, EpochRequest>) {
+          impl_->write(value);
+        }
+      },
+      measurement);
+}
+
+void RawlogWriter::finish() { impl_->finish(); }
+
+}  // namespace foucault
