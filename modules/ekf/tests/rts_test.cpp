@@ -1,0 +1,260 @@
+#include "foucault/ekf/rts.h"
+
+#include <gtest/gtest.h>
+
+#include "foucault/ekf/rts_smoother.h"
+#include "foucault/simulation/simulated_source.h"
+#include "trip.h"
+
+namespace foucault {
+namespace {
+
+using ekf::FullState;
+using test::kDeg;
+using test::Trip;
+
+constexpr int kSize = error_state::kSize;
+
+/// A linear estimation problem in the error state: x_0 ~ (0, P0), x_k+1 = phi_k x_k + w,
+/// z_k = position of x_k + noise. Attitude errors are small enough for rotations to add up.
+struct LinearProblem {
+  static constexpr int kNodes = 6;
+  Matrix15d P0;
+  std::vector<Matrix15d> phi, Q;  ///< from node k to k + 1
+  std::vector<Eigen::Vector3d> z;
+  Eigen::Matrix3d R = Eigen::Vector3d(0.01, 0.02, 0.04).asDiagonal();
+};
+
+Vector15d sigmas() {
+  Vector15d s;
+  s << Eigen::Vector3d::Constant(0.3), Eigen::Vector3d::Constant(0.2),
+      Eigen::Vector3d::Constant(1e-7), Eigen::Vector3d::Constant(1e-3),
+      Eigen::Vector3d::Constant(1e-2);
+  return s;
+}
+
+LinearProblem random_problem() {
+  std::mt19937_64 rng{11};
+  const Vector15d s = sigmas();
+  LinearProblem p;
+  p.P0 = test::random_covariance(rng, s);
+  for (int k = 0; k < LinearProblem::kNodes; ++k) {
+    Matrix15d mix;
+    for (int i = 0; i < 15; ++i) mix.col(i) = 0.2 * test::draw15(rng);
+    p.phi.push_back(s.asDiagonal() * (Matrix15d::Identity() + mix) * s.cwiseInverse().asDiagonal());
+    p.Q.push_back(0.1 * test::random_covariance(rng, s));
+    p.z.push_back(0.3 * test::draw3(rng));
+  }
+  return p;
+}
+
+FullState origin() {
+  FullState state;
+  state.motion.position = {0.1, 0.2, 30};
+  return state;
+}
+
+/// The filter's forward pass as nodes.
+std::vector<RtsNode> filtered(const LinearProblem& p) {
+  std::vector<RtsNode> nodes;
+  Vector15d x = Vector15d::Zero();
+  Matrix15d P = p.P0;
+  for (int k = 0; k < LinearProblem::kNodes; ++k) {
+    RtsNode node;
+    node.begins_run = k == 0;
+    if (k > 0) {
+      x = (p.phi[k - 1] * x).eval();
+      P = (p.phi[k - 1] * P * p.phi[k - 1].transpose() + p.Q[k - 1]).eval();
+      node.phi = p.phi[k - 1];
+    }
+    node.predicted = corrected(origin(), x);
+    node.predicted_covariance = P;
+    const Eigen::Matrix<double, 15, 3> K =
+        P.leftCols<3>() * (P.topLeftCorner<3, 3>() + p.R).inverse();
+    x = (x + K * (p.z[k] - x.head<3>())).eval();
+    P = (P - K * P.topRows<3>()).eval();
+    node.filtered = corrected(origin(), x);
+    node.filtered_covariance = P;
+    nodes.push_back(node);
+  }
+  return nodes;
+}
+
+struct Batch {
+  Eigen::VectorXd x;
+  Eigen::MatrixXd covariance;
+};
+
+/// All states at once, by the normal equations in units of sigmas.
+Batch least_squares(const LinearProblem& p) {
+  const int n = 15 * LinearProblem::kNodes;
+  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(n, n);
+  Eigen::VectorXd right = Eigen::VectorXd::Zero(n);
+  information.topLeftCorner<15, 15>() = p.P0.inverse();
+  for (int k = 0; k < LinearProblem::kNodes; ++k) {
+    information.block<3, 3>(15 * k, 15 * k) += p.R.inverse();
+    right.segment<3>(15 * k) += p.R.inverse() * p.z[k];
+    if (k + 1 == LinearProblem::kNodes) break;
+    Eigen::Matrix<double, 15, 30> J;
+    J << -p.phi[k], Matrix15d::Identity();
+    information.block<30, 30>(15 * k, 15 * k) += J.transpose() * p.Q[k].inverse() * J;
+  }
+  const Eigen::VectorXd scale = sigmas().replicate(LinearProblem::kNodes, 1);
+  const Eigen::MatrixXd scaled = scale.asDiagonal() * information * scale.asDiagonal();
+  const Eigen::MatrixXd covariance = scale.asDiagonal() * scaled.inverse() * scale.asDiagonal();
+  return {covariance * right, covariance};
+}
+
+TEST(Rts, EqualsBatchLeastSquaresOnALinearProblem) {
+  const LinearProblem p = random_problem();
+  std::vector<RtsNode> nodes = filtered(p);
+  smooth(nodes);
+  const Batch batch = least_squares(p);
+  const Vector15d units = sigmas().cwiseInverse();
+  for (int k = 0; k < LinearProblem::kNodes; ++k) {
+    const Vector15d x = difference(origin(), nodes[k].filtered, kSize);
+    const Vector15d dx = units.asDiagonal() * (x - batch.x.segment<15>(15 * k));
+    const Matrix15d dP =
+        units.asDiagonal() *
+        (nodes[k].filtered_covariance - batch.covariance.block<15, 15>(15 * k, 15 * k)) *
+        units.asDiagonal();
+    // A metre of the ellipsoid is linear to 1e-7.
+    EXPECT_LT(dx.cwiseAbs().maxCoeff(), 1e-6) << "node " << k;
+    EXPECT_LT(dP.cwiseAbs().maxCoeff(), 1e-9) << "node " << k;
+  }
+}
+
+TEST(Rts, NothingIsCarriedBackOverAStart) {
+  std::vector<RtsNode> nodes = filtered(random_problem());
+  nodes[3].begins_run = true;
+  std::vector<RtsNode> first_run(nodes.begin(), nodes.begin() + 3);
+  smooth(first_run);
+  smooth(nodes);
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_EQ(difference(first_run[k].filtered, nodes[k].filtered, kSize).norm(), 0);
+    EXPECT_EQ(first_run[k].filtered_covariance, nodes[k].filtered_covariance);
+  }
+}
+
+/// A trip through the driver: epochs of one method with the truth at their stamps.
+struct Collected : public Sink {
+  void epoch(const Epoch& e) override { epochs.push_back(e); }
+  void fix(const FixResult& f) override { fixes.push_back(f); }
+  std::vector<Epoch> epochs;
+  std::vector<FixResult> fixes;
+};
+
+constexpr double kOutageBegin = 200;
+constexpr double kOutageEnd = 260;
+
+ScenarioOptions trip_options(int64_t seed) {
+  ScenarioOptions options;
+  options.duration_s = 320;
+  options.imu_rate_hz = 100;
+  options.reference_rate_hz = 0;
+  options.seed = seed;
+  return options;
+}
+
+AlignmentOptions given_alignment(const SimulatedSource& source, int64_t start_ns) {
+  const so3::Euler euler = so3::to_euler(source.truth(start_ns).q_n_b);
+  AlignmentOptions options;
+  options.mode = "given";
+  options.roll_deg = euler.roll / kDeg;
+  options.pitch_deg = euler.pitch / kDeg;
+  options.heading_deg = euler.heading / kDeg;
+  return options;
+}
+
+bool in_outage(double t) { return t > kOutageBegin && t <= kOutageEnd; }
+
+void feed(Estimator& estimator, SimulatedSource& source, int64_t start_ns) {
+  while (const std::optional<Measurement> m = source.next()) {
+    const bool withheld =
+        std::holds_alternative<GnssFix>(*m) && in_outage(seconds_between(start_ns, stamp(*m)));
+    if (!withheld) estimator.process(*m);
+  }
+  estimator.finish();
+}
+
+/// What forward and smoothed runs over the same recording give.
+struct BothWays {
+  Collected forward, smoothed;
+};
+
+BothWays run_both_ways(const ScenarioOptions& scenario, const ImuNoise& noise) {
+  const int64_t start_ns = scenario.start_ns();
+  BothWays both;
+  {
+    SimulatedSource source(scenario, noise);
+    Aligner aligner(given_alignment(source, start_ns), noise, source.mounting());
+    NavigationRun run(std::make_unique<EkfNavigator>(noise, EkfOptions{}), std::move(aligner),
+                      NavigationRunOptions{}, both.forward);
+    feed(run, source, start_ns);
+  }
+  SimulatedSource source(scenario, noise);
+  Aligner aligner(given_alignment(source, start_ns), noise, source.mounting());
+  RtsSmoother rts(noise, EkfOptions{}, std::move(aligner), NavigationRunOptions{}, both.smoothed);
+  feed(rts, source, start_ns);
+  return both;
+}
+
+Eigen::Vector3d position_error(const SimulatedSource& source, const Epoch& epoch) {
+  const Geodetic truth = source.truth(epoch.t_ns).position;
+  return displacement_n(truth, epoch.position, Place(truth));
+}
+
+TEST(RtsSmoother, IsNeverWorseThanTheForwardRun) {
+  const ImuNoise noise = imu_preset("ADIS16465");
+  double forward_worst = 0;
+  double smoothed_worst = 0;
+  double nees = 0;
+  int epochs = 0;
+  for (const int64_t seed : {1, 2, 3}) {
+    const ScenarioOptions scenario = trip_options(seed);
+    const SimulatedSource truth(scenario, noise);
+    const BothWays both = run_both_ways(scenario, noise);
+    ASSERT_EQ(both.forward.epochs.size(), both.smoothed.epochs.size());
+    ASSERT_EQ(both.forward.fixes.size(), both.smoothed.fixes.size());
+    for (std::size_t k = 0; k < both.forward.epochs.size(); ++k) {
+      const Epoch& forward = both.forward.epochs[k];
+      const Epoch& smoothed = both.smoothed.epochs[k];
+      ASSERT_EQ(forward.t_ns, smoothed.t_ns);
+      const Vector15d gain = forward.covariance.diagonal() - smoothed.covariance.diagonal();
+      EXPECT_GE(gain.cwiseQuotient(forward.covariance.diagonal()).minCoeff(), -1e-6);
+      if (!in_outage(seconds_between(scenario.start_ns(), forward.t_ns))) continue;
+      const Eigen::Vector3d error = position_error(truth, smoothed);
+      forward_worst = std::max(forward_worst, position_error(truth, forward).norm());
+      smoothed_worst = std::max(smoothed_worst, error.norm());
+      nees += error.dot(smoothed.covariance.topLeftCorner<3, 3>().llt().solve(error));
+      ++epochs;
+    }
+  }
+  // Between fixes on both sides the error of 60 s falls to that of 2 x 30 s, and with the cubic
+  // growth of drift to a tenth or less.
+  EXPECT_GT(forward_worst, 1);
+  EXPECT_LT(smoothed_worst, 0.3 * forward_worst);
+  // Errors within an outage are one draw, so the mean is of few: a factor, not a band.
+  EXPECT_LT(nees / epochs, 3 * 3);
+}
+
+TEST(RtsSmoother, PostfitsAreOfTheSmoothedSolution) {
+  const BothWays both = run_both_ways(trip_options(4), imu_preset("ADIS16465"));
+  double innovation = 0;
+  double postfit = 0;
+  int count = 0;
+  for (std::size_t k = 0; k < both.smoothed.fixes.size(); ++k) {
+    const FixResult& fix = both.smoothed.fixes[k];
+    EXPECT_EQ(fix.innovation_n, both.forward.fixes[k].innovation_n);
+    if (fix.verdict != FixVerdict::used) continue;
+    innovation += fix.innovation_n.squaredNorm();
+    postfit += fix.postfit_n.squaredNorm();
+    ++count;
+  }
+  EXPECT_LT(postfit, innovation);
+  // The fixes' own noise: 1, 1, 2 cm.
+  EXPECT_NEAR(std::sqrt(postfit / count), 0.0245, 0.003);
+}
+
+}  // namespace
+}  // namespace foucault
