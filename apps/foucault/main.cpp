@@ -46,6 +46,7 @@ class Program {
   }
 
   int run(int argc, char** argv) {
+    if (argc > 1) check_command(argv[1]);
     app_.parse(argc, argv);
     watch_interrupts();
     Console console(quiet_);
@@ -68,6 +69,17 @@ class Program {
     actions_.emplace(sub, command.declare(*sub));
   }
 
+  /// CLI11 would only say that a subcommand is missing.
+  static void check_command(const std::string& name) {
+    if (name.empty() || name.front() == '-') return;
+    std::string known;
+    for (const Command& command : commands()) {
+      if (name == command.name) return;
+      known += fmt::format("{}{}", known.empty() ? "" : ", ", command.name);
+    }
+    throw UsageError(fmt::format("unknown command '{}'; known: {}", name, known));
+  }
+
   std::string deepest_command() const {
     std::string name = "foucault";
     for (const CLI::App* app = &app_; !app->get_subcommands().empty();) {
@@ -77,7 +89,7 @@ class Program {
     return name;
   }
 
-  CLI::App app_{"Foucault: post-processing of GNSS/IMU recordings"};
+  CLI::App app_{"Foucault: post-processing of GNSS/IMU recordings", "foucault"};
   bool quiet_ = false;
   std::map<const CLI::App*, std::function<void(Call&)>> actions_;
 };

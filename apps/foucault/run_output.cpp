@@ -44,14 +44,14 @@ void RunOutput::fix(const FixResult& fix) {
 void RunOutput::notice(const Notice& notice) {
   if (report_ != nullptr) report_->notice(notice);
   if (notice.kind == NoticeKind::aligned) {
-    console_.say(fmt::format("aligned    {}, {}", format_utc(notice.t_ns), notice.text));
+    console_.say(fmt::format("start      {}, {}", format_utc(notice.t_ns), notice.text));
   } else {
     console_.warn(fmt::format("{}: {}", format_utc(notice.t_ns), notice.text));
   }
 }
 
 void RunOutput::reference_error(const Epoch& epoch, const ReferenceError& error) {
-  if (report_ != nullptr) report_->reference_error(error);
+  if (report_ != nullptr) report_->reference_error(epoch, error);
   if (metrics_) metrics_->reference_error(epoch, error);
 }
 

@@ -1,0 +1,54 @@
+#include "settings.h"
+
+#include <gtest/gtest.h>
+
+#include "foucault/core/error.h"
+#include "methods.h"
+#include "simulation_job.h"
+
+namespace foucault::app {
+namespace {
+
+TEST(Settings, EveryKeyHasADefaultThatReadsBack) {
+  Settings settings;
+  const std::string written = dump_config(settings);
+  Settings again;
+  load_config_text(written, "defaults", again);
+  EXPECT_EQ(dump_config(again), written);
+}
+
+TEST(Settings, HelpKnowsEverySection) {
+  Settings settings;
+  const std::string help = describe_config(settings);
+  for (const char* key : {"imu.preset", "alignment.mode", "fgo.window_s", "output.rate"}) {
+    EXPECT_NE(help.find(key), std::string::npos) << key;
+  }
+}
+
+TEST(Settings, SimulationReadsBackToo) {
+  SimulationSettings settings;
+  settings.scenario.seed = 99;
+  SimulationSettings again;
+  load_config_text(dump_config(settings), "defaults", again);
+  EXPECT_EQ(again.scenario.seed, 99);
+}
+
+TEST(Methods, AllOfThemCanBeMade) {
+  const Settings settings;
+  Sink sink;
+  for (const Method& method : methods()) {
+    EXPECT_NE(method.make(settings, {}, sink), nullptr) << method.name;
+  }
+}
+
+TEST(Methods, AnUnknownOneIsToldTheKnownOnes) {
+  try {
+    find_method("kalman");
+    FAIL();
+  } catch (const UsageError& error) {
+    EXPECT_NE(std::string(error.what()).find("refined"), std::string::npos) << error.what();
+  }
+}
+
+}  // namespace
+}  // namespace foucault::app

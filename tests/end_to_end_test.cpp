@@ -1,0 +1,232 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "support/program.h"
+#include "support/table.h"
+#include "support/test_folder.h"
+
+/// Every subcommand of the built program on a small simulated recording.
+namespace foucault::test {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::StartsWith;
+
+class Trip : public testing::Test {
+ protected:
+  Trip() {
+    log_ = folder_ / "trip.rawlog";
+    const Outcome made = foucault({"simulate", "--imu", "ADIS16465", "--duration", "150", "--seed",
+                                   "7", "--set", "scenario.rest_s=15", "--out", log_});
+    EXPECT_EQ(made.exit_code, 0) << made.err;
+  }
+
+  json metrics(const std::string& run) const {
+    return json::parse(folder_.text(run + "/metrics.json"));
+  }
+
+  TestFolder folder_;
+  std::string log_;
+};
+
+double root_mean_square(const std::vector<double>& values) {
+  double sum = 0;
+  for (const double value : values) sum += value * value;
+  return std::sqrt(sum / static_cast<double>(values.size()));
+}
+
+TEST(Help, NamesEveryCommandAndTeaches) {
+  const Outcome help = foucault({"--help"});
+  EXPECT_EQ(help.exit_code, 0);
+  for (const char* command : {"demo", "simulate", "import", "info", "run", "report"}) {
+    EXPECT_THAT(help.out, HasSubstr(command));
+    const Outcome own = foucault({command, "--help"});
+    EXPECT_EQ(own.exit_code, 0) << command;
+    EXPECT_THAT(own.out, HasSubstr("--help")) << command;
+  }
+  EXPECT_THAT(foucault({"run", "--help-config"}).out, HasSubstr("fgo.window_s"));
+  EXPECT_THAT(foucault({"simulate", "--help-config"}).out, HasSubstr("scenario.duration_s"));
+  EXPECT_THAT(foucault({"import", "csv", "--help-mapping"}).out, HasSubstr("lever_arm_m"));
+  EXPECT_THAT(foucault({"--version"}).out, StartsWith("foucault "));
+}
+
+TEST_F(Trip, TheSameSeedGivesTheSameRecording) {
+  const std::string again = folder_ / "again.rawlog";
+  const std::string other = folder_ / "other.rawlog";
+  for (const auto& [seed, path] : {std::pair{"7", again}, std::pair{"8", other}}) {
+    ASSERT_EQ(foucault({"simulate", "--duration", "150", "--seed", seed, "--set",
+                        "scenario.rest_s=15", "--out", path})
+                  .exit_code,
+              0);
+  }
+  EXPECT_EQ(folder_.text("trip.rawlog"), folder_.text("again.rawlog"));
+  EXPECT_NE(folder_.text("trip.rawlog"), folder_.text("other.rawlog"));
+}
+
+TEST_F(Trip, InfoTellsWhatIsInIt) {
+  const Outcome text = foucault({"info", log_});
+  EXPECT_EQ(text.exit_code, 0) << text.err;
+  EXPECT_THAT(text.out, HasSubstr("CObservationIMU"));
+
+  const Outcome answer = foucault({"info", log_, "--json"});
+  ASSERT_EQ(answer.exit_code, 0) << answer.err;
+  const json info = json::parse(answer.out);
+  ASSERT_EQ(info["gnss"].size(), 1u);
+  bool imu_seen = false;
+  for (const json& stream : info["streams"]) {
+    if (stream["type"] != "CObservationIMU") continue;
+    imu_seen = true;
+    EXPECT_NEAR(stream["rate_hz"], 200, 1);
+    EXPECT_NEAR(stream["duration_s"], 150, 0.01);
+    EXPECT_EQ(stream["backward"], 0);
+  }
+  EXPECT_TRUE(imu_seen);
+}
+
+TEST_F(Trip, RunWritesSolutionMetricsAndReport) {
+  const std::string out = folder_ / "run";
+  const Outcome run = foucault({"run", log_, "--out", out});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.err, IsEmpty());  // no warning, and no progress bar in a pipe
+  EXPECT_THAT(run.out, HasSubstr("report/index.html"));
+
+  const Table solution(out + "/solution.csv");
+  const std::vector<std::string> first{"t_unix_s",    "lat_deg",    "lon_deg",    "height_m",
+                                       "v_north_m_s", "v_east_m_s", "v_down_m_s", "roll_deg",
+                                       "pitch_deg",   "heading_deg"};
+  ASSERT_GE(solution.names().size(), first.size());
+  EXPECT_TRUE(std::equal(first.begin(), first.end(), solution.names().begin()));
+  EXPECT_EQ(folder_.lines("run/solution.tum").size(), solution.rows());
+  EXPECT_THAT(folder_.text("run/solution.kml"), HasSubstr("</kml>"));
+  EXPECT_THAT(folder_.text("run/report/index.html"), HasSubstr("<html"));
+
+  const json m = metrics("run");
+  EXPECT_EQ(m["method"], "refined");
+  EXPECT_EQ(m["epochs"], solution.rows());
+  EXPECT_NEAR(m["duration_s"], 150, 20);
+  EXPECT_GT(m["gnss"]["used"], 100);
+  EXPECT_EQ(m["gnss"]["rejected"], 0);
+  for (const char* axis : {"north", "east", "down"}) {
+    EXPECT_GT(m["gnss"]["innovation_rms_m"][axis], m["gnss"]["postfit_rms_m"][axis]) << axis;
+  }
+  // The sigmas of the fixes are 1, 1 and 2 cm; a filter is no worse than its measurements.
+  EXPECT_LT(m["reference"]["horizontal_rmse_m"], 0.02);
+  EXPECT_LT(m["reference"]["vertical_rmse_m"], 0.02);
+  // Heading is found from 1 Hz fixes of 1 cm over a few hundred metres.
+  EXPECT_LT(m["reference"]["heading_rmse_deg"], 0.5);
+  for (const char* key : {"roll_rmse_deg", "pitch_rmse_deg"}) EXPECT_LT(m["reference"][key], 0.2);
+  for (const char* key : {"cpu_s", "wall_s", "peak_rss_mb"}) EXPECT_GT(m[key], 0) << key;
+}
+
+TEST_F(Trip, EveryMethodRuns) {
+  for (const std::string method : {"ekf", "refined", "rough"}) {
+    const std::string out = folder_ / method;
+    const Outcome run = foucault({"run", log_, "--method", method, "--no-report", "--out", out});
+    ASSERT_EQ(run.exit_code, 0) << method << ": " << run.err;
+    EXPECT_EQ(metrics(method)["method"], method);
+    EXPECT_LT(metrics(method)["reference"]["horizontal_rmse_m"], 0.02) << method;
+    EXPECT_FALSE(fs::exists(out + "/report"));
+  }
+}
+
+TEST_F(Trip, TheWrittenConfigurationGivesTheSameRunAgain) {
+  ASSERT_EQ(foucault({"run", log_, "--set", "fgo.window_s=7", "--set", "imu.preset=ICM20602",
+                      "--no-report", "--out", folder_ / "a"})
+                .exit_code,
+            0);
+  ASSERT_EQ(foucault({"run", log_, "--config", folder_ / "a/config.yaml", "--no-report", "--out",
+                      folder_ / "b"})
+                .exit_code,
+            0);
+  EXPECT_EQ(folder_.text("a/config.yaml"), folder_.text("b/config.yaml"));
+  EXPECT_EQ(folder_.text("a/solution.csv"), folder_.text("b/solution.csv"));
+  ASSERT_EQ(foucault({"run", log_, "--no-report", "--out", folder_ / "c"}).exit_code, 0);
+  EXPECT_NE(folder_.text("a/solution.csv"), folder_.text("c/solution.csv"));
+}
+
+TEST_F(Trip, OutputAtImuRateHasARowForEverySample) {
+  const std::string out = folder_ / "imu";
+  ASSERT_EQ(foucault({"run", log_, "--set", "output.rate=imu", "--method", "ekf", "--no-report",
+                      "--out", out})
+                .exit_code,
+            0);
+  const std::vector<double> t = Table(out + "/solution.csv").column("t_unix_s");
+  EXPECT_TRUE(std::is_sorted(t.begin(), t.end()));
+  EXPECT_NEAR(static_cast<double>(t.size()), 200 * (t.back() - t.front()), 5);
+}
+
+TEST_F(Trip, StatisticsCanLeaveOutTheSettling) {
+  ASSERT_EQ(foucault({"run", log_, "--no-report", "--out", folder_ / "all"}).exit_code, 0);
+  ASSERT_EQ(foucault({"run", log_, "--set", "output.statistics_from_s=100", "--no-report", "--out",
+                      folder_ / "late"})
+                .exit_code,
+            0);
+  EXPECT_EQ(metrics("late")["epochs"], metrics("all")["epochs"]);
+  EXPECT_NEAR(metrics("late")["gnss"]["samples"], 50, 2);
+}
+
+TEST_F(Trip, ReportDrawsTheSameBytesAgain) {
+  ASSERT_EQ(foucault({"run", log_, "--method", "ekf", "--out", folder_ / "run"}).exit_code, 0);
+  std::vector<std::pair<std::string, std::string>> before;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder_ / "run/report")) {
+    const std::string name = "run/report/" + entry.path().filename().string();
+    before.emplace_back(name, folder_.text(name));
+  }
+  ASSERT_GT(before.size(), 10u);
+  fs::remove(folder_ / "run/report/index.html");
+  for (const auto& [name, text] : before) {
+    if (fs::path(name).extension() == ".png") fs::remove(folder_.path() / name);
+  }
+  const Outcome report = foucault({"report", folder_ / "run"});
+  ASSERT_EQ(report.exit_code, 0) << report.err;
+  for (const auto& [name, text] : before) EXPECT_EQ(folder_.text(name), text) << name;
+}
+
+TEST_F(Trip, RunAgainReplacesResultsAndLeavesWhatIsNotOurs) {
+  ASSERT_EQ(foucault({"run", log_, "--method", "ekf", "--out", folder_ / "run"}).exit_code, 0);
+  folder_.write("run/notes.txt", "mine");
+  ASSERT_EQ(foucault({"run", log_, "--method", "rough", "--out", folder_ / "run"}).exit_code, 0);
+  EXPECT_EQ(metrics("run")["method"], "rough");
+  EXPECT_EQ(folder_.text("run/notes.txt"), "mine");
+}
+
+TEST_F(Trip, QuietSaysNothing) {
+  const Outcome run = foucault(
+      {"run", log_, "--quiet", "--no-report", "--method", "ekf", "--out", folder_ / "run"});
+  EXPECT_EQ(run.exit_code, 0);
+  EXPECT_THAT(run.out, IsEmpty());
+  EXPECT_THAT(run.err, IsEmpty());
+}
+
+TEST(Demo, LeavesARecordingItsSolutionAndItsReport) {
+  const TestFolder folder;
+  const Outcome demo = foucault({"demo", "--out", folder / "demo"});
+  ASSERT_EQ(demo.exit_code, 0) << demo.err;
+  EXPECT_THAT(demo.out, HasSubstr(folder / "demo/report/index.html"));
+  for (const char* name : {"trip.rawlog", "solution.csv", "metrics.json", "report/index.html"}) {
+    EXPECT_TRUE(fs::exists(folder / "demo" + ("/" + std::string(name)))) << name;
+  }
+  EXPECT_EQ(foucault({"info", folder / "demo/trip.rawlog"}).exit_code, 0);
+}
+
+/// Ten hours take the simulator longer than the time until the signal.
+TEST(Interrupt, LeavesNothingBehind) {
+  const TestFolder folder;
+  const Outcome stopped = foucault_interrupted(
+      {"simulate", "--duration", "36000", "--out", folder / "long.rawlog"}, 0.5);
+  EXPECT_EQ(stopped.exit_code, 130);
+  EXPECT_EQ(folder.entries(), 0u);
+}
+
+}  // namespace
+}  // namespace foucault::test

@@ -1,0 +1,80 @@
+#include "support/program.h"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/wait.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <stdexcept>
+#include <thread>
+
+#include "support/program_path.h"
+#include "support/test_folder.h"
+
+extern char** environ;
+
+namespace foucault::test {
+namespace {
+
+/// A child process whose output goes into files of a folder.
+class Child {
+ public:
+  explicit Child(const std::vector<std::string>& arguments) {
+    posix_spawn_file_actions_t actions;
+    posix_spawn_file_actions_init(&actions);
+    constexpr int kWrite = O_WRONLY | O_CREAT | O_TRUNC;
+    const std::string out = folder_ / "out";
+    const std::string err = folder_ / "err";
+    posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
+    posix_spawn_file_actions_addopen(&actions, 1, out.c_str(), kWrite, 0600);
+    posix_spawn_file_actions_addopen(&actions, 2, err.c_str(), kWrite, 0600);
+    std::vector<std::string> words{kProgramPath};
+    words.insert(words.end(), arguments.begin(), arguments.end());
+    std::vector<char*> argv;
+    for (std::string& word : words) argv.push_back(word.data());
+    argv.push_back(nullptr);
+    const int error = posix_spawn(&pid_, kProgramPath, &actions, nullptr, argv.data(), environ);
+    posix_spawn_file_actions_destroy(&actions);
+    if (error != 0) throw std::runtime_error(std::string("cannot start ") + kProgramPath);
+  }
+
+  void terminate() const { kill(pid_, SIGTERM); }
+
+  Outcome wait() const {
+    int status = 0;
+    waitpid(pid_, &status, 0);
+    Outcome outcome;
+    if (WIFEXITED(status)) outcome.exit_code = WEXITSTATUS(status);
+    outcome.out = folder_.text("out");
+    outcome.err = folder_.text("err");
+    return outcome;
+  }
+
+ private:
+  TestFolder folder_;
+  pid_t pid_ = 0;
+};
+
+}  // namespace
+
+Outcome foucault(const std::vector<std::string>& arguments) { return Child(arguments).wait(); }
+
+Outcome foucault_interrupted(const std::vector<std::string>& arguments, double seconds) {
+  const Child child(arguments);
+  std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
+  child.terminate();
+  return child.wait();
+}
+
+std::optional<std::filesystem::path> shared_data() {
+  const char* named = std::getenv("FOUCAULT_DATA_DIR");
+  const std::filesystem::path folder =
+      named != nullptr ? std::filesystem::path(named)
+                       : std::filesystem::path(kSourceFolder).parent_path() / "shared" / "data";
+  if (!std::filesystem::is_directory(folder)) return std::nullopt;
+  return folder;
+}
+
+}  // namespace foucault::test
