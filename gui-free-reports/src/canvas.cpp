@@ -166,6 +166,12 @@ void add_plus(FineMask& mask, const cv::Point2d& p, double r, double width) {
   mask.line({p.x, p.y - r}, {p.x, p.y + r}, width);
 }
 
+void add_frame(FineMask& mask, const cv::Point2d& p, double r, double width) {
+  const Polyline corners{
+      {p.x - r, p.y - r}, {p.x + r, p.y - r}, {p.x + r, p.y + r}, {p.x - r, p.y + r}};
+  for (size_t i = 0; i < 4; ++i) mask.line(corners[i], corners[(i + 1) % 4], width);
+}
+
 void add_star(FineMask& mask, const cv::Point2d& p, double r) {
   const Polyline corners = star(p, r);
   for (size_t i = 0; i < corners.size(); ++i) {
@@ -194,6 +200,8 @@ void add_marker(FineMask& mask, Shape shape, const cv::Point2d& p, double diamet
       return mask.convex({{p.x, p.y - r}, {p.x + r, p.y}, {p.x, p.y + r}, {p.x - r, p.y}});
     case Shape::star:
       return add_star(mask, p, 1.2 * r);
+    case Shape::frame:
+      return add_frame(mask, p, r, stroke);
     case Shape::tick:
       return mask.convex(
           {{p.x - 0.9, p.y - r}, {p.x + 0.9, p.y - r}, {p.x + 0.9, p.y + r}, {p.x - 0.9, p.y + r}});

@@ -18,15 +18,16 @@ constexpr Names<Mark, 5> kMarks{{{Mark::line, "line"},
                                  {Mark::steps, "steps"},
                                  {Mark::bars, "bars"},
                                  {Mark::band, "band"}}};
-constexpr Names<Shape, 9> kShapes{{{Shape::dot, "dot"},
-                                   {Shape::ring, "ring"},
-                                   {Shape::cross, "cross"},
-                                   {Shape::plus, "plus"},
-                                   {Shape::triangle, "triangle"},
-                                   {Shape::square, "square"},
-                                   {Shape::diamond, "diamond"},
-                                   {Shape::star, "star"},
-                                   {Shape::tick, "tick"}}};
+constexpr Names<Shape, 10> kShapes{{{Shape::dot, "dot"},
+                                    {Shape::ring, "ring"},
+                                    {Shape::cross, "cross"},
+                                    {Shape::plus, "plus"},
+                                    {Shape::triangle, "triangle"},
+                                    {Shape::square, "square"},
+                                    {Shape::diamond, "diamond"},
+                                    {Shape::star, "star"},
+                                    {Shape::tick, "tick"},
+                                    {Shape::frame, "frame"}}};
 constexpr Names<RangeRole, 3> kRoles{
     {{RangeRole::full, "full"}, {RangeRole::typical, "typical"}, {RangeRole::none, "none"}}};
 constexpr Names<AxisKind, 4> kAxisKinds{{{AxisKind::linear, "linear"},

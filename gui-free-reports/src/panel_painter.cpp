@@ -238,7 +238,25 @@ class PanelPainter {
     return result;
   }
 
+  /// Frames around cells.
+  void frames(const Series& series) {
+    std::vector<Polyline> outlines;
+    for (size_t i = 0; i < series.x.size(); ++i) {
+      const double left = x(series.x[i] - 0.5);
+      const double right = x(series.x[i] + 0.5);
+      const double top = y(series.y[i] + 0.5);
+      const double bottom = y(series.y[i] - 0.5);
+      if (!drawable(left, top)) continue;
+      Polyline outline = rectangle(left, top, right, bottom);
+      outline.push_back(outline.front());
+      outlines.push_back(std::move(outline));
+    }
+    const double width = 2.6 * kPixelsPerPoint;
+    canvas_.polylines(outlines, {rgb(series.ink), width, 1, false}, grown(plot_, width));
+  }
+
   void points(const Series& series) {
+    if (series.shape == Shape::frame) return frames(series);
     if (!series.lower.empty()) intervals(series, series.x);
     const double diameter = series.size * kPixelsPerPoint;
     for (const Cloud& cloud : clouds(series)) {

@@ -55,7 +55,7 @@ Eigen::Vector3d AxisStatistics::inside_3_sigma() const {
 
 void Triad::add(double t, const Eigen::Vector3d& value, const Eigen::Vector3d& sigma) {
   rows.add(t, six(value, sigma));
-  statistics.add(value, sigma);
+  if (t >= statistics_from) statistics.add(value, sigma);
 }
 
 std::optional<double> StepWatch::observe(double t) {
@@ -109,6 +109,13 @@ Eigen::Vector3d StartPlane::north_east_up(const Geodetic& place) const {
           (transverse + start_.height) * std::cos(middle) *
               so3::wrap(place.longitude - start_.longitude),
           place.height - start_.height};
+}
+
+RunData::RunData(const Mounting& mounting, double statistics_from)
+    : mounting_(mounting), statistics_from_(statistics_from) {
+  for (Triad* triad : {&position_error, &velocity_error, &attitude_error, &innovation, &postfit}) {
+    triad->statistics_from = statistics_from;
+  }
 }
 
 double RunData::seconds(int64_t t_ns) {

@@ -34,6 +34,7 @@ class AxisStatistics {
 struct Triad {
   DecimatedTable rows{6};
   AxisStatistics statistics;
+  double statistics_from = 0;  ///< [s]
 
   void add(double t, const Eigen::Vector3d& value, const Eigen::Vector3d& sigma);
   bool empty() const { return rows.empty(); }
@@ -99,7 +100,10 @@ class StartPlane {
 
 class RunData {
  public:
-  explicit RunData(const Mounting& mounting) : mounting_(mounting) {}
+  /// Statistics are over what comes from `statistics_from` [s] on.
+  RunData(const Mounting& mounting, double statistics_from);
+
+  double statistics_from() const { return statistics_from_; }
 
   void add(const Epoch& epoch);
   void add(const FixResult& fix);
@@ -146,6 +150,7 @@ class RunData {
   void mark_gap();
 
   Mounting mounting_;
+  double statistics_from_;
   std::vector<Stretch> outages_;
   std::optional<int64_t> start_ns_;
   std::optional<StartPlane> plane_;

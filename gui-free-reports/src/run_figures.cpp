@@ -163,19 +163,27 @@ std::string with_unit(double value, const std::string& unit) {
   return significant_text(value) + (unit == "°" ? "" : " ") + unit;
 }
 
+/// ", from 60 s on", if anything is left out.
+std::string since(double statistics_from) {
+  if (statistics_from <= 0) return {};
+  return fmt::format(", from {} s on", significant_text(statistics_from));
+}
+
 std::string statistics_note(double rms, double inside, const std::string& unit, double factor) {
   return fmt::format("RMS {} · {} % within 3σ", with_unit(rms * factor, unit),
                      number_text(100 * inside, 1));
 }
 
-void add_notes(const AxisStatistics& statistics, Figure& figure) {
+void add_notes(const Triad& triad, Figure& figure) {
+  const AxisStatistics& statistics = triad.statistics;
   const Eigen::Vector3d rms = statistics.rms();
   const Eigen::Vector3d inside = statistics.inside_3_sigma();
   for (size_t i = 0; i < 3; ++i) {
     Panel& panel = figure.panels[i];
     const auto axis = static_cast<Eigen::Index>(i);
     const std::string unit = panel.y.shown_unit.empty() ? panel.y.unit : panel.y.shown_unit;
-    panel.note = statistics_note(rms[axis], inside[axis], unit, panel.y.shown_factor);
+    panel.note = statistics_note(rms[axis], inside[axis], unit, panel.y.shown_factor) +
+                 since(triad.statistics_from);
   }
 }
 
@@ -199,7 +207,7 @@ Figure error_figure(const RunData& data, const Triad& triad, const Quantity& qua
                     Figure figure) {
   add_error_panels(data, triad, quantity, figure);
   if (quantity.unit == "m") choose_length_unit(figure);
-  add_notes(triad.statistics, figure);
+  add_notes(triad, figure);
   return figure;
 }
 
@@ -427,7 +435,7 @@ std::optional<Figure> gyro_bias_figure(const RunData& data, const std::string& s
   Figure figure = stacked("gyro_bias", "Gyroscope bias", subtitle);
   figure.caption =
       "Bias on the axes of the IMU with 3-sigma bounds. After the first manoeuvres it should move "
-      "slowly, within the bounds it had before.";
+      "slowly, within the bounds it had before. Bounds wider than the axes are cut.";
   add_estimate_panels(data, data.gyro_bias, {"bias", "°/h", kXyz}, 1, figure);
   return figure;
 }
@@ -484,7 +492,7 @@ std::optional<Figure> innovation_figure(const RunData& data, const std::string& 
     figure.panels.push_back(innovation_panel(data, used, rejected, axis));
   }
   choose_length_unit(figure);
-  add_notes(data.innovation.statistics, figure);
+  add_notes(data.innovation, figure);
   return figure;
 }
 
@@ -506,9 +514,11 @@ std::optional<Figure> postfit_figure(const RunData& data, const std::string& sub
   choose_length_unit(figure);
   for (size_t i = 0; i < 3; ++i) {
     const Axis& y = figure.panels[i].y;
-    figure.panels[i].note = fmt::format(
-        "RMS {} {}", significant_text(rms[static_cast<Eigen::Index>(i)] * y.shown_factor),
-        y.shown_unit.empty() ? y.unit : y.shown_unit);
+    figure.panels[i].note =
+        fmt::format("RMS {} {}",
+                    significant_text(rms[static_cast<Eigen::Index>(i)] * y.shown_factor),
+                    y.shown_unit.empty() ? y.unit : y.shown_unit) +
+        since(data.postfit.statistics_from);
   }
   return figure;
 }

@@ -61,39 +61,6 @@ std::string joined_by_dots(const std::vector<std::string>& parts) {
   return text;
 }
 
-struct ErrorRow {
-  const char* quantity;
-  std::string unit;
-  const Triad* triad;
-  double factor = 1;
-};
-
-std::vector<std::string> error_row(const ErrorRow& row, const char* axis, Eigen::Index i) {
-  const AxisStatistics& statistics = row.triad->statistics;
-  return {fmt::format("{}, {}", row.quantity, axis),
-          fmt::format("{} {}", significant_text(statistics.rms()[i] * row.factor), row.unit),
-          fmt::format("{} %", number_text(100 * statistics.inside_3_sigma()[i], 1))};
-}
-
-Table error_table(const RunData& data) {
-  Table table;
-  table.title = "Estimate against reference";
-  table.header = {"Error", "RMS", "within 3σ"};
-  table.note = fmt::format("{} epochs compared.", data.position_error.statistics.count());
-  for (const ErrorRow& row : {ErrorRow{"Position", "m", &data.position_error},
-                              {"Velocity", "m/s", &data.velocity_error},
-                              {"Attitude", "°", &data.attitude_error}}) {
-    if (row.triad->empty()) continue;
-    const bool euler = row.triad == &data.attitude_error;
-    const std::array<const char*, 3> axes =
-        euler ? std::array{"roll", "pitch", "heading"} : std::array{"north", "east", "down"};
-    for (Eigen::Index i = 0; i < 3; ++i) {
-      table.rows.push_back(error_row(row, axes[static_cast<size_t>(i)], i));
-    }
-  }
-  return table;
-}
-
 Table fix_table(const RunData& data) {
   Table table;
   table.title = "GNSS fixes";
@@ -104,23 +71,6 @@ Table fix_table(const RunData& data) {
   for (const auto& [verdict, count] : data.verdicts) {
     table.rows.push_back({verdict_name(verdict), std::to_string(count)});
   }
-  return table;
-}
-
-Table innovation_table(const RunData& data) {
-  Table table;
-  table.title = "GNSS innovations and residuals";
-  table.header = {"", "Innovation RMS", "within 3σ", "Residual RMS"};
-  const Eigen::Vector3d rms = data.innovation.statistics.rms();
-  const Eigen::Vector3d inside = data.innovation.statistics.inside_3_sigma();
-  const Eigen::Vector3d after = data.postfit.statistics.rms();
-  for (Eigen::Index i = 0; i < 3; ++i) {
-    const char* const axis = std::array{"North", "East", "Down"}[static_cast<size_t>(i)];
-    table.rows.push_back({axis, significant_text(rms[i]) + " m",
-                          number_text(100 * inside[i], 1) + " %",
-                          significant_text(after[i]) + " m"});
-  }
-  table.note = "All used fixes, those before the filter has settled included.";
   return table;
 }
 
@@ -179,7 +129,7 @@ bool has_content(const Section& section) {
 class RunReport::Collector {
  public:
   Collector(RunLabels run_labels, const Mounting& mounting)
-      : labels(std::move(run_labels)), data(mounting) {}
+      : labels(std::move(run_labels)), data(mounting, labels.statistics_from_s) {}
 
   std::string subtitle() const {
     return joined_by_dots({labels.recording, labels.method,
@@ -188,8 +138,6 @@ class RunReport::Collector {
 
   Section overview() const {
     Section section{"Overview", {}, tables, {}};
-    if (!data.position_error.empty()) section.tables.push_back(error_table(data));
-    if (!data.innovation.empty()) section.tables.push_back(innovation_table(data));
     add_if(ground_track(data, subtitle()), section);
     return section;
   }

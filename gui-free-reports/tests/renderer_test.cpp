@@ -115,7 +115,7 @@ TEST(Renderer, DrawsEveryMark) {
 }
 
 TEST(Renderer, DrawsEveryShape) {
-  for (int shape = 0; shape <= static_cast<int>(Shape::tick); ++shape) {
+  for (int shape = 0; shape <= static_cast<int>(Shape::frame); ++shape) {
     Figure figure = curve({0, 1, 2, 3}, {2, 2.5, 1.5, 2});
     Series& series = figure.panels[0].series[0];
     series.mark = Mark::points;

@@ -12,7 +12,8 @@
 namespace foucault::reports {
 
 enum class Mark { line, points, steps, bars, band };
-enum class Shape { dot, ring, cross, plus, triangle, square, diamond, star, tick };
+/// `frame` surrounds a cell of a heat map and has no size of its own.
+enum class Shape { dot, ring, cross, plus, triangle, square, diamond, star, tick, frame };
 
 /// What the automatic range of the y axis takes from a series: all of it, its typical part (10 %
 /// to 90 %), or nothing. Points outside the range are drawn as arrowheads on the border.

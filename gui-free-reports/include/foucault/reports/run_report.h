@@ -17,6 +17,9 @@ struct RunLabels {
   std::string version;    ///< of the program
   std::string command;    ///< the command line; may be empty
   std::string config;     ///< the effective configuration, YAML
+  /// Root mean squares in the figures are over what is shown from here on [s since the start]: the
+  /// settling time can be left out.
+  double statistics_from_s = 0;
 };
 
 /// Collects a run in bounded memory and writes its report: ground track, position, velocity,
@@ -42,7 +45,7 @@ class RunReport : public Sink {
   /// Shown large at the top, in this order.
   void key_number(const KeyNumber& number);
 
-  /// Shown under "Key numbers", in this order.
+  /// Shown under "Overview", in this order.
   void table(const Table& table);
 
   /// The page with all its figures, as plain data.

@@ -1,0 +1,55 @@
+#include "foucault/reports/evaluation_report.h"
+
+#include <utility>
+
+namespace foucault::reports {
+namespace {
+
+Section overview(const EvaluationReport& report) {
+  Section section;
+  section.title = "Overview";
+  section.paragraphs = report.remarks;
+  section.tables = report.tables;
+  if (!report.rms.empty()) section.figures.push_back(drift_bars(report.rms, report.methods));
+  return section;
+}
+
+Section case_section(const DriftCase& drift_case, const MethodOrder& order) {
+  Section section;
+  section.title = drift_case.name;
+  section.figures = {drift_curves(drift_case, order), maximum_drifts(drift_case, order),
+                     drift_distribution(drift_case, order), drift_growth(drift_case, order)};
+  return section;
+}
+
+Section recordings(const EvaluationReport& report) {
+  Section section;
+  section.title = "Recordings";
+  for (const OutageMap& map : report.maps) {
+    section.figures.push_back(outage_map(map, report.methods));
+  }
+  for (const ErrorTimeline& timeline : report.timelines) {
+    section.figures.push_back(error_timeline(timeline, report.methods));
+  }
+  return section;
+}
+
+}  // namespace
+
+ReportPage evaluation_page(const EvaluationReport& report) {
+  ReportPage page;
+  page.title = report.title;
+  page.subtitle = report.subtitle;
+  page.key_numbers = report.key_numbers;
+  page.sections.push_back(overview(report));
+  for (const DriftCase& drift_case : report.cases) {
+    page.sections.push_back(case_section(drift_case, report.methods));
+  }
+  Section last = recordings(report);
+  if (!last.figures.empty()) page.sections.push_back(std::move(last));
+  page.listings = report.listings;
+  page.footer = report.footer;
+  return page;
+}
+
+}  // namespace foucault::reports
