@@ -33,8 +33,9 @@ constexpr double kEnoughRest = 10;
 constexpr double kGyroScaleSigma = 0.003;  // of the angle turned: scale factor, misalignment
 /// Measurements used in the alignment are used again in the run: their variances are doubled.
 constexpr double kReuse = 2;
-constexpr double kSpeedChecked = 30;  // [s] after rest that the inertial speed tells the direction
-constexpr double kReversing = -1.0;   // [m/s]
+constexpr double kSpeedChecked = 30;   // [s] after rest that the inertial speed tells the direction
+constexpr double kReversing = -1.0;    // [m/s]
+constexpr double kStaleAttitude = 60;  // [s] after rest: a new rest is preferred
 
 std::optional<GivenAngle> given(const std::optional<double>& degrees, double sigma_degrees) {
   if (!degrees) return std::nullopt;
@@ -60,7 +61,7 @@ void require_all(const GivenAngles& angles) {
 
 CourseLimits course_limits(const AlignmentOptions& options) {
   return {options.min_speed_m_s, options.max_course_sigma_deg * kDegree,
-          options.max_turn_rate_deg_s * kDegree};
+          options.max_turn_rate_deg_s * kDegree, options.mounting_sigma_deg * kDegree};
 }
 
 std::string describe(const Epoch& epoch, const Quaterniond& q_v_b) {
@@ -98,6 +99,8 @@ void AlignmentOptions::fields(ConfigFields& f) {
   f.number("max_course_sigma_deg", max_course_sigma_deg, kPositive, "of one course");
   f.number("max_turn_rate_deg_s", max_turn_rate_deg_s, kPositive,
            "faster, the vehicle does not drive straight");
+  f.number("mounting_sigma_deg", mounting_sigma_deg, kPositive,
+           "course against the forward axis: mounting and crab angle");
   f.number("min_rest_s", min_rest_s, kPositive, "shorter rests are not used");
   f.number("max_rest_s", max_rest_s, {10, 3600}, "how far back the start may lie");
 }
@@ -138,6 +141,7 @@ class CarriedAttitude {
   }
 
   const LevelAttitude& attitude() const { return attitude_; }
+  double since_rest() const { return since_rest_; }  ///< [s]
 
   /// Variance of the azimuth's change since the rest [rad^2].
   double drift_variance() const {
@@ -174,6 +178,7 @@ class Aligner::Impl {
         q_v_b_(mounting.q_v_b.normalized()),
         given_(given_angles(options)),
         rest_(options.min_rest_s, options.max_rest_s),
+        later_rest_(rest_),
         carried_(q_v_b_.conjugate() * Vector3d::UnitX()),
         courses_(course_limits(options)),
         moving_(course_limits(options), given_.heading, q_v_b_, noise) {
@@ -192,6 +197,7 @@ class Aligner::Impl {
  private:
   bool all_given() const { return options_.mode == "given"; }
   void begin_given(const GnssFix& fix);
+  void add_to_rest(const ImuIncrement& increment);
   void note_hole(const ImuIncrement& increment);
   void finish_rest_with_given_heading();
   void start_at_rest(const HeadingOffset& heading, double drift_variance);
@@ -203,6 +209,7 @@ class Aligner::Impl {
   GivenAngles given_;
 
   RestDetector rest_;
+  RestDetector later_rest_;  ///< one that may take the place of rest_ once that has ended
   CarriedAttitude carried_;
   CourseFinder courses_;
   MovingAlignment moving_;
@@ -224,6 +231,7 @@ void Aligner::Impl::add(const GnssFix& fix) {
     return;
   }
   rest_.add(fix);
+  if (rest_.ended()) later_rest_.add(fix);
   finish_rest_with_given_heading();
   if (initial_) return;
   if (rest_.established()) {
@@ -248,17 +256,29 @@ void Aligner::Impl::add(const ImuIncrement& increment) {
   }
   moving_.add(increment);
   carried_.add(increment);
-  if (rest_.add(increment)) {
-    carried_.rest(rest_.means(), latitude_, noise_);
-    courses_.interrupt();
-  }
+  add_to_rest(increment);
   finish_rest_with_given_heading();
+}
+
+void Aligner::Impl::add_to_rest(const ImuIncrement& increment) {
+  bool still = rest_.add(increment);
+  if (rest_.ended()) {
+    later_rest_.add(increment);
+    // A rest that goes on after all (GNSS had wandered), or the next one after a long way.
+    if (carried_.since_rest() > kStaleAttitude && later_rest_.established()) {
+      rest_ = std::exchange(later_rest_, RestDetector(options_.min_rest_s, options_.max_rest_s));
+      still = true;
+    }
+  }
+  if (!still) return;
+  carried_.rest(rest_.recent_means(), latitude_, noise_);
+  courses_.interrupt();
 }
 
 void Aligner::Impl::note_hole(const ImuIncrement& increment) {
   if (!last_increment_ns_) return;
   if (seconds_between(*last_increment_ns_, increment.t_begin_ns) <= kLargestHole) return;
-  rest_ = RestDetector(options_.min_rest_s, options_.max_rest_s);
+  rest_ = later_rest_ = RestDetector(options_.min_rest_s, options_.max_rest_s);
   courses_.interrupt();
   moving_.restart();
   first_given_.reset();

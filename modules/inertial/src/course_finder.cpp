@@ -19,9 +19,8 @@ constexpr std::size_t kLongestRun = 10;
 constexpr double kShortestRun = 2.8;  // [s]: three ways of a second
 constexpr double kAgreement = 4;      // chi-square per degree of freedom
 /// The vehicle's point without sideslip (a car's rear axle) lies within this of the IMU.
-constexpr double kSideslipArm = 1.5;  // [m]
-/// Forward axis and course differ by mounting and crab angle even when all else is right.
-constexpr double kSmallestSigma = 0.3 * 0.0174532925199;  // [rad]
+constexpr double kSideslipArm = 1.5;                  // [m]
+constexpr double kCrabSigma = 0.3 * 0.0174532925199;  // [rad], of a single course
 
 double course_sigma(const Eigen::Matrix3d& covariance, const Eigen::Vector3d& way) {
   const Eigen::Vector2d across = Eigen::Vector2d(-way.y(), way.x()).normalized();
@@ -143,7 +142,7 @@ std::optional<CourseFinder::Course> CourseFinder::course_by_velocity(const Recor
 }
 
 /// Weighted mean of the run if its courses agree within their sigmas.
-std::optional<HeadingOffset> CourseFinder::agreement() {
+std::optional<HeadingOffset> CourseFinder::agreement() const {
   if (run_.size() < kCourses) return std::nullopt;
   if (seconds_between(run_.front().begin_ns, run_.back().end_ns) < kShortestRun) {
     return std::nullopt;
@@ -152,8 +151,7 @@ std::optional<HeadingOffset> CourseFinder::agreement() {
   const double reference = run_.front().offset;
   for (const Course& course : run_) {
     const double slip = course.turn_rate * kSideslipArm / course.speed;
-    const double weight =
-        1 / (course.sigma * course.sigma + kSmallestSigma * kSmallestSigma + slip * slip);
+    const double weight = 1 / (course.sigma * course.sigma + kCrabSigma * kCrabSigma + slip * slip);
     const double difference = so3::wrap(course.offset - reference);
     weights += weight;
     sum += weight * difference;
@@ -167,8 +165,8 @@ std::optional<HeadingOffset> CourseFinder::agreement() {
 
   HeadingOffset result;
   result.offset = so3::wrap(reference + sum / weights);
-  result.variance =
-      std::max(1.0, chi_square) / weights + kSmallestSigma * kSmallestSigma + sideslip * sideslip;
+  result.variance = std::max(1.0, chi_square) / weights +
+                    limits_.mounting_sigma * limits_.mounting_sigma + sideslip * sideslip;
   result.courses = static_cast<int>(run_.size());
   result.begin_ns = run_.front().begin_ns;
   result.end_ns = run_.back().end_ns;

@@ -21,9 +21,10 @@ double azimuth(const Eigen::Vector3d& vector);
 
 /// Course criteria.
 struct CourseLimits {
-  double min_speed = 3;        ///< [m/s]
-  double max_sigma = 0.05;     ///< of one course [rad]
-  double max_turn_rate = 0.1;  ///< [rad/s]
+  double min_speed = 3;           ///< [m/s]
+  double max_sigma = 0.05;        ///< of one course [rad]
+  double max_turn_rate = 0.1;     ///< [rad/s]
+  double mounting_sigma = 0.005;  ///< course against forward axis [rad]
 };
 
 /// Heading of l's north-like axis, i.e. heading = offset + azimuth in l.
@@ -73,7 +74,7 @@ class CourseFinder {
   std::optional<Course> course_by_positions(const Record& record) const;
   std::optional<Course> course_by_velocity(const Record& record) const;
   bool acceptable(const Course& course) const;
-  std::optional<HeadingOffset> agreement();
+  std::optional<HeadingOffset> agreement() const;
 
   CourseLimits limits_;
   FixQuality best_quality_ = FixQuality::unknown;

@@ -26,13 +26,6 @@ Vector3d gravity_n(const Geodetic& position) {
   return {0, 0, wgs84::normal_gravity(position.latitude, position.height)};
 }
 
-/// Reaction to gravity, in n: what an ideal accelerometer feels. Coriolis included.
-Vector3d specific_force_n(const AlignmentFindings& findings) {
-  const Vector3d earth_rate = wgs84::earth_rate_n(findings.fix.antenna.latitude);
-  return findings.acceleration_n + 2 * earth_rate.cross(findings.antenna_velocity_n) -
-         gravity_n(findings.fix.antenna);
-}
-
 double prior_sigma(double turn_on_sigma, double bias_sigma) {
   return std::hypot(turn_on_sigma, bias_sigma);
 }
@@ -147,6 +140,13 @@ void place_at_imu(Epoch& epoch, const GnssFix& fix, const Vector3d& antenna_velo
 }
 
 }  // namespace
+
+/// From v_dot = f + g - 2 omega_ie x v.
+Vector3d specific_force_n(const AlignmentFindings& findings) {
+  const Vector3d earth_rate = wgs84::earth_rate_n(findings.fix.antenna.latitude);
+  return findings.acceleration_n + 2 * earth_rate.cross(findings.antenna_velocity_n) -
+         gravity_n(findings.fix.antenna);
+}
 
 Quaterniond attitude_of(const AlignmentFindings& findings) {
   const Vector3d force_n = specific_force_n(findings);

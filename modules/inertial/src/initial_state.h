@@ -35,6 +35,9 @@ struct AlignmentFindings {
   Eigen::Vector3d omega_b = Eigen::Vector3d::Zero();  ///< true rate at the stamp, for the lever arm
 };
 
+/// Reaction to gravity and acceleration that an ideal accelerometer feels, in n [m/s^2].
+Eigen::Vector3d specific_force_n(const AlignmentFindings& findings);
+
 /// The attitude of `findings`: R f_b = a_n - g_n in direction, forward axis at the heading.
 Eigen::Quaterniond attitude_of(const AlignmentFindings& findings);
 

@@ -1,9 +1,9 @@
 #include "moving_alignment.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <vector>
 
 #include "foucault/core/so3.h"
 #include "foucault/core/time.h"
@@ -16,8 +16,6 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
-using Matrix9d = Eigen::Matrix<double, 9, 9>;
-using Vector9d = Eigen::Matrix<double, 9, 1>;
 
 constexpr double kDegree = 0.0174532925199;
 constexpr double kShortest = 3.9;               // [s]
@@ -26,37 +24,92 @@ constexpr std::ptrdiff_t kFewestFixes = 4;      // of 3 parameters an axis
 constexpr double kLatency = 0.1;                // [s]: velocities lag, IMU stamps are late
 constexpr double kForceSigma = 0.05;            // [m/s^2]: what latency and changing forces leave
 constexpr double kLevelChange = 1.0 * kDegree;  // of roll and pitch over a stretch
-constexpr double kSmallestHeadingSigma = 0.3 * kDegree;
-constexpr double kSideslipArm = 1.5;  // [m], see CourseFinder
+constexpr double kSideslipArm = 1.5;            // [m], see CourseFinder
 constexpr double kLargestLevelSigma = 3 * kDegree;
+constexpr double kLargestExcess = 0.5;      // [m/s^2], of the specific force's length
+constexpr double kWorstInnovations = 9;     // mean square over sigma
+constexpr double kJerk = 1.0;               // density of a car's jerk [m/s^3/sqrt(Hz)]
+constexpr double kUnknownVelocity = 100;    // [m/s]
+constexpr double kUnknownAcceleration = 3;  // [m/s^2]
+constexpr double kSteadyTurn = 0.5;         // [s]: shorter steps say nothing about a turn
 
-/// Normal equations of one observation z = A x + noise(C), with x = [p v a].
-struct NormalEquations {
-  Matrix9d information = Matrix9d::Zero();
-  Vector9d vector = Vector9d::Zero();
+/// One axis of the antenna's motion: position, velocity, acceleration, velocity at the first fix.
+struct AxisFilter {
+  Eigen::Vector4d x = Eigen::Vector4d::Zero();
+  Eigen::Matrix4d P = Eigen::Matrix4d::Zero();
   double squares = 0;
   int observations = 0;
 
-  void add(const Eigen::Matrix<double, 3, 9>& A, const Vector3d& z, const Matrix3d& covariance) {
-    const Matrix3d weight = covariance.inverse();
-    information += A.transpose() * weight * A;
-    vector += A.transpose() * weight * z;
-    squares += z.dot(weight * z);
-    observations += 3;
+  explicit AxisFilter(double position_variance) {
+    const double v = kUnknownVelocity * kUnknownVelocity;
+    P.diagonal() << position_variance, v, kUnknownAcceleration * kUnknownAcceleration, v;
+    P(1, 3) = P(3, 1) = v;
+  }
+
+  /// Acceleration as a random walk: jerk is white noise of density kJerk.
+  void predict(double dt) {
+    Eigen::Matrix4d F = Eigen::Matrix4d::Identity();
+    F(0, 1) = dt;
+    F(0, 2) = dt * dt / 2;
+    F(1, 2) = dt;
+    const double q = kJerk * kJerk, dt2 = dt * dt, dt3 = dt2 * dt;
+    Eigen::Matrix3d Q;
+    Q << dt3 * dt2 / 20, dt2 * dt2 / 8, dt3 / 6,  //
+        dt2 * dt2 / 8, dt3 / 3, dt2 / 2,          //
+        dt3 / 6, dt2 / 2, dt;
+    x = F * x;
+    P = F * P * F.transpose();
+    P.topLeftCorner<3, 3>() += q * Q;
+  }
+
+  void update(int component, double value, double variance) {
+    const double S = P(component, component) + variance;
+    const double innovation = value - x[component];
+    const Eigen::Vector4d K = P.col(component) / S;
+    squares += innovation * innovation / S;
+    ++observations;
+    x += K * innovation;
+    const Eigen::Matrix4d I_KH =
+        Eigen::Matrix4d::Identity() - K * Eigen::Vector4d::Unit(component).transpose();
+    P = I_KH * P * I_KH.transpose() + variance * K * K.transpose();
   }
 };
 
-void add_fix(NormalEquations& equations, const GnssFix& fix, const LocalFrame& frame,
-             int64_t end_ns) {
-  const double t = seconds_between(end_ns, fix.t_ns);
-  Eigen::Matrix<double, 3, 9> A;
-  A << Matrix3d::Identity(), t * Matrix3d::Identity(), 0.5 * t * t * Matrix3d::Identity();
-  equations.add(A, frame.to_local(fix.antenna), fix.position_covariance);
-  const bool coarse = horizontal_sigma(fix.position_covariance) > kPreciseSigma;
-  if (!coarse || !fix.velocity_n) return;
-  A << Matrix3d::Zero(), Matrix3d::Identity(), t * Matrix3d::Identity();
-  equations.add(A, *fix.velocity_n, fix.velocity_covariance);
-}
+/// Three axes, and how the course turns along the way.
+struct MotionFilter {
+  std::vector<AxisFilter> axes;
+  int fixes = 0;
+  double fastest_turn = 0;
+
+  explicit MotionFilter(const GnssFix& first) {
+    for (int axis = 0; axis < 3; ++axis) {
+      axes.emplace_back(first.position_covariance(axis, axis));
+    }
+    use_velocity(first);
+  }
+
+  Vector3d component(int i) const { return {axes[0].x[i], axes[1].x[i], axes[2].x[i]}; }
+
+  void add(const GnssFix& fix, const Vector3d& position, double dt) {
+    const double course = azimuth(component(1));
+    for (int axis = 0; axis < 3; ++axis) {
+      axes[axis].predict(dt);
+      axes[axis].update(0, position[axis], fix.position_covariance(axis, axis));
+    }
+    use_velocity(fix);
+    if (++fixes < 2) return;  // the first course is arbitrary
+    const double turned = so3::wrap(azimuth(component(1)) - course);
+    fastest_turn = std::max(fastest_turn, std::abs(turned) / std::max(dt, kSteadyTurn));
+  }
+
+  void use_velocity(const GnssFix& fix) {
+    const bool coarse = horizontal_sigma(fix.position_covariance) > kPreciseSigma;
+    if (!coarse || !fix.velocity_n) return;
+    for (int axis = 0; axis < 3; ++axis) {
+      axes[axis].update(1, (*fix.velocity_n)[axis], fix.velocity_covariance(axis, axis));
+    }
+  }
+};
 
 Vector3d mean_rate(const std::deque<ImuIncrement>& increments, int64_t begin_ns) {
   Vector3d sum = Vector3d::Zero();
@@ -71,28 +124,35 @@ Vector3d mean_rate(const std::deque<ImuIncrement>& increments, int64_t begin_ns)
 
 }  // namespace
 
-std::optional<MotionFit> fit_motion(std::deque<GnssFix>::const_iterator first,
-                                    std::deque<GnssFix>::const_iterator last) {
-  const GnssFix& end = *std::prev(last);
-  const LocalFrame frame(end.antenna);
-  NormalEquations equations;
-  for (auto fix = first; fix != last; ++fix) add_fix(equations, *fix, frame, end.t_ns);
-  const int freedom = equations.observations - 9;
-  const Eigen::LDLT<Matrix9d> ldlt(equations.information);
-  if (freedom < 1 || ldlt.info() != Eigen::Success || !ldlt.isPositive()) return std::nullopt;
-
-  const Vector9d x = ldlt.solve(equations.vector);
-  const double misfit = std::max(0.0, equations.squares - x.dot(equations.vector)) / freedom;
-  const Matrix9d covariance = std::max(1.0, misfit) * ldlt.solve(Matrix9d::Identity());
-  if (!x.allFinite() || !covariance.allFinite()) return std::nullopt;
+MotionFit fit_motion(std::deque<GnssFix>::const_iterator first,
+                     std::deque<GnssFix>::const_iterator last) {
+  const LocalFrame frame(first->antenna);
+  MotionFilter filter(*first);
+  for (auto fix = std::next(first); fix != last; ++fix) {
+    filter.add(*fix, frame.to_local(fix->antenna),
+               seconds_between(std::prev(fix)->t_ns, fix->t_ns));
+  }
   MotionFit fit;
-  fit.duration = seconds_between(first->t_ns, end.t_ns);
-  fit.velocity_n = x.segment<3>(3);
-  fit.acceleration_n = x.segment<3>(6);
-  fit.begin_velocity_n = fit.velocity_n - fit.duration * fit.acceleration_n;
-  fit.covariance = covariance.bottomRightCorner<6, 6>();
+  fit.duration = seconds_between(first->t_ns, std::prev(last)->t_ns);
+  fit.fastest_turn = filter.fastest_turn;
+  fit.velocity_n = filter.component(1);
+  fit.begin_velocity_n = filter.component(3);
+  fit.acceleration_n = (fit.velocity_n - fit.begin_velocity_n) / fit.duration;
+  double squares = 0;
+  int observations = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    Eigen::Matrix<double, 2, 4> J;  // velocity and mean acceleration by the axis' state
+    J << 0, 1, 0, 0, 0, 1 / fit.duration, 0, -1 / fit.duration;
+    const Eigen::Matrix2d P = J * filter.axes[axis].P * J.transpose();
+    fit.covariance(axis, axis) = P(0, 0);
+    fit.covariance(axis, axis + 3) = fit.covariance(axis + 3, axis) = P(0, 1);
+    fit.covariance(axis + 3, axis + 3) = P(1, 1);
+    squares += filter.axes[axis].squares;
+    observations += filter.axes[axis].observations;
+  }
   fit.covariance.topLeftCorner<3, 3>() +=
       kLatency * kLatency * fit.acceleration_n * fit.acceleration_n.transpose();
+  fit.innovation_ratio = squares / observations;
   return fit;
 }
 
@@ -120,7 +180,7 @@ std::optional<AlignmentFindings> MovingAlignment::add(const GnssFix& fix) {
   while (seconds_between(fixes_.front().t_ns, fix.t_ns) > kLongest) fixes_.pop_front();
   if (increments_.empty()) return std::nullopt;
 
-  // Shorter stretches first: the acceleration is more nearly constant over them.
+  // The shortest stretch that is good enough.
   for (auto first = fixes_.cend(); first != fixes_.cbegin();) {
     --first;
     const bool covered = first->t_ns >= increments_.front().t_begin_ns;
@@ -134,29 +194,28 @@ std::optional<AlignmentFindings> MovingAlignment::add(const GnssFix& fix) {
 }
 
 std::optional<AlignmentFindings> MovingAlignment::align(std::deque<GnssFix>::const_iterator first) {
-  const std::optional<MotionFit> fit = fit_motion(first, fixes_.cend());
-  if (!fit) return std::nullopt;
-  fastest_ = std::max(fastest_, fit->velocity_n.head<2>().norm());
-  if (!straight_and_fast(*fit)) return std::nullopt;
+  const MotionFit fit = fit_motion(first, fixes_.cend());
+  fastest_ = std::max(fastest_, fit.velocity_n.head<2>().norm());
+  if (fit.innovation_ratio > kWorstInnovations || !straight_and_fast(fit)) return std::nullopt;
 
   AlignmentFindings findings;
   findings.fix = fixes_.back();
   findings.q_v_b = q_v_b_;
-  findings.antenna_velocity_n = fit->velocity_n;
-  findings.acceleration_n = fit->acceleration_n;
-  findings.motion_covariance = fit->covariance;
-  find_gyro(*fit, first->t_ns, findings);
+  findings.antenna_velocity_n = fit.velocity_n;
+  findings.acceleration_n = fit.acceleration_n;
+  findings.motion_covariance = fit.covariance;
+  find_gyro(fit, first->t_ns, findings);
   Matrix3d bias_covariance;
   const Vector3d bias = bias_estimate(findings, bias_covariance);
   turn_forces_to_the_end(bias, first->t_ns, findings);
-  const double turned = std::sqrt(bias_covariance.trace() / 3) * fit->duration / 2;
+  const double turned = std::sqrt(bias_covariance.trace() / 3) * fit.duration / 2;
   const double force_sigma =
-      std::hypot(kForceSigma, noise_.accel_noise_density / std::sqrt(fit->duration),
+      std::hypot(kForceSigma, noise_.accel_noise_density / std::sqrt(fit.duration),
                  turned * findings.specific_force_b.norm());
   findings.specific_force_covariance = force_sigma * force_sigma * Matrix3d::Identity();
   findings.omega_b = findings.gyro_b - bias;
-  find_attitude(*fit, findings);
-  if (!precise(findings)) return std::nullopt;
+  find_attitude(fit, findings);
+  if (!credible(findings)) return std::nullopt;
   return findings;
 }
 
@@ -236,18 +295,21 @@ void MovingAlignment::find_attitude(const MotionFit& fit, AlignmentFindings& fin
   }
   const double speed = velocity_n.head<2>().norm();
   const double sideslip = turn_rate * (kSideslipArm / speed + kLatency);
-  findings.heading_variance = kSmallestHeadingSigma * kSmallestHeadingSigma + sideslip * sideslip;
+  findings.heading_variance = limits_.mounting_sigma * limits_.mounting_sigma + sideslip * sideslip;
   findings.heading_by_velocity = Vector3d(-velocity_n.y(), velocity_n.x(), 0) / (speed * speed);
 }
 
-bool MovingAlignment::precise(const AlignmentFindings& findings) const {
+/// Precise enough, and the two sensors agree about the length of the specific force.
+bool MovingAlignment::credible(const AlignmentFindings& findings) const {
   const Matrix3d velocity = findings.motion_covariance.topLeftCorner<3, 3>();
   const double course_variance =
       findings.heading_by_velocity.dot(velocity * findings.heading_by_velocity);
-  const double level_sigma = std::sqrt(findings.motion_covariance.diagonal().tail<3>().maxCoeff()) /
-                             findings.specific_force_b.norm();
+  const double acceleration_sigma =
+      std::sqrt(findings.motion_covariance.diagonal().tail<3>().maxCoeff());
+  const double excess = findings.specific_force_b.norm() - specific_force_n(findings).norm();
   return course_variance <= limits_.max_sigma * limits_.max_sigma &&
-         level_sigma <= kLargestLevelSigma;
+         acceleration_sigma <= kLargestLevelSigma * findings.specific_force_b.norm() &&
+         std::abs(excess) <= kLargestExcess + 3 * acceleration_sigma;
 }
 
 }  // namespace foucault

@@ -12,21 +12,22 @@
 
 namespace foucault {
 
-/// Constant acceleration fitted to fixes.
+/// Motion of the antenna over a stretch, estimated from its fixes.
 struct MotionFit {
   Eigen::Vector3d begin_velocity_n = Eigen::Vector3d::Zero();  ///< [m/s], at the first fix
   Eigen::Vector3d velocity_n = Eigen::Vector3d::Zero();        ///< [m/s], at the last fix
-  Eigen::Vector3d acceleration_n = Eigen::Vector3d::Zero();    ///< [m/s^2]
-  /// Of velocity_n and acceleration_n, with the misfit.
+  Eigen::Vector3d acceleration_n = Eigen::Vector3d::Zero();    ///< mean over the stretch [m/s^2]
+  /// Of velocity_n and acceleration_n.
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
-  double duration = 0;  ///< [s]
+  double duration = 0;          ///< [s]
+  double fastest_turn = 0;      ///< of the course between fixes [rad/s]
+  double innovation_ratio = 0;  ///< mean square of normalized innovations, 1 if all is well
 };
 
-/// Weighted least squares over [first, last); positions, and velocities where positions are coarse.
-/// The covariance is scaled up where residuals are larger than the fixes' sigmas. None when the
-/// fixes do not determine it.
-std::optional<MotionFit> fit_motion(std::deque<GnssFix>::const_iterator first,
-                                    std::deque<GnssFix>::const_iterator last);
+/// Kalman filter over the fixes [first, last) with an acceleration that wanders as that of a car
+/// does; positions, and velocities where positions are coarse. Axes are taken as independent.
+MotionFit fit_motion(std::deque<GnssFix>::const_iterator first,
+                     std::deque<GnssFix>::const_iterator last);
 
 /// Alignment while driving, over a straight stretch of 4 to 10 seconds.
 class MovingAlignment {
@@ -49,7 +50,7 @@ class MovingAlignment {
   void find_gyro(const MotionFit& fit, int64_t begin_ns, AlignmentFindings& findings) const;
   Eigen::Vector3d bias_estimate(const AlignmentFindings& findings,
                                 Eigen::Matrix3d& covariance) const;
-  bool precise(const AlignmentFindings& findings) const;
+  bool credible(const AlignmentFindings& findings) const;
 
   CourseLimits limits_;
   std::optional<GivenAngle> given_heading_;

@@ -233,6 +233,7 @@ void NavigationRun::take_event(const Event& event) {
 }
 
 void NavigationRun::take_increment(const ImuIncrement& increment) {
+  if (increment.t_end_ns <= time_ns_) return;  // before the start
   ImuIncrement rest = increment;
   if (rest.t_begin_ns < time_ns_) rest = split(increment, time_ns_).second;
   if (rest.t_begin_ns > time_ns_ && !bridge_gap(rest)) return;

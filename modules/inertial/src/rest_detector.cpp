@@ -13,12 +13,25 @@ namespace {
 constexpr double kBlock = 1.0;                         // [s]
 constexpr double kSteadyGyro = 0.3 * 0.0174532925199;  // [rad/s]
 constexpr double kSteadyAccel = 0.08;                  // [m/s^2]
-constexpr int kDisturbedBlocks = 3;                    // more end the rest
-constexpr double kStandingSpeed = 0.2;                 // [m/s], beyond 3 sigma
-constexpr double kStandingDistance = 0.1;              // [m], beyond 4 sigma
+constexpr std::size_t kRecentBlocks = 20;
+constexpr int kDisturbedBlocks = 3;        // more end the rest
+constexpr double kStandingSpeed = 0.2;     // [m/s], beyond 3 sigma
+constexpr double kStandingDistance = 0.1;  // [m], beyond 4 sigma
 
 double horizontal_sigma(const Eigen::Matrix3d& covariance) {
   return std::sqrt(std::max(covariance(0, 0), covariance(1, 1)));
+}
+
+/// Variance of a mean, given the difference of the means of the two halves. White noise makes that
+/// difference of twice the sigma of the mean; what is far beyond is drift, and as much as the
+/// difference does the mean then miss the ends.
+Eigen::Vector3d with_drift(const Eigen::Vector3d& variance, const Eigen::Vector3d& change) {
+  Eigen::Vector3d result = variance;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double squared = change[axis] * change[axis];
+    if (squared > 9 * 4 * variance[axis]) result[axis] = squared;
+  }
+  return result;
 }
 
 }  // namespace
@@ -113,21 +126,40 @@ bool RestDetector::established() const {
   return confirmed_ns >= nanoseconds(0.5 * kBlock * static_cast<double>(min_blocks_));
 }
 
-RestMeans RestDetector::means() const {
-  const std::size_t n = blocks_.size() > 1 && ended_ ? blocks_.size() - 1 : blocks_.size();
+std::size_t RestDetector::blocks_used() const {
+  return blocks_.size() > 1 && ended_ ? blocks_.size() - 1 : blocks_.size();
+}
+
+RestMeans RestDetector::means() const { return means_over(0, blocks_used()); }
+
+RestMeans RestDetector::recent_means() const {
+  const std::size_t n = blocks_used();
+  return means_over(n > kRecentBlocks ? n - kRecentBlocks : 0, n);
+}
+
+RestMeans RestDetector::means_over(std::size_t first, std::size_t last) const {
+  const double n = static_cast<double>(last - first);
   RestMeans rest;
-  rest.begin_ns = blocks_.front().begin_ns;
-  rest.end_ns = blocks_[n - 1].end_ns;
-  for (std::size_t i = 0; i < n; ++i) {
-    rest.gyro_b += blocks_[i].gyro_b / static_cast<double>(n);
-    rest.accel_b += blocks_[i].accel_b / static_cast<double>(n);
+  rest.begin_ns = blocks_[first].begin_ns;
+  rest.end_ns = blocks_[last - 1].end_ns;
+  for (std::size_t i = first; i < last; ++i) {
+    rest.gyro_b += blocks_[i].gyro_b / n;
+    rest.accel_b += blocks_[i].accel_b / n;
   }
-  if (n < 2) return rest;
-  const double weight = 1 / (static_cast<double>(n) * static_cast<double>(n - 1));
-  for (std::size_t i = 0; i < n; ++i) {
-    rest.gyro_variance += weight * (blocks_[i].gyro_b - rest.gyro_b).cwiseAbs2();
-    rest.accel_variance += weight * (blocks_[i].accel_b - rest.accel_b).cwiseAbs2();
+  if (last - first < 2) return rest;
+  Eigen::Vector3d gyro_change = Eigen::Vector3d::Zero();
+  Eigen::Vector3d accel_change = Eigen::Vector3d::Zero();
+  for (std::size_t i = first; i < last; ++i) {
+    const Eigen::Vector3d gyro = blocks_[i].gyro_b - rest.gyro_b;
+    const Eigen::Vector3d accel = blocks_[i].accel_b - rest.accel_b;
+    rest.gyro_variance += gyro.cwiseAbs2() / (n * (n - 1));
+    rest.accel_variance += accel.cwiseAbs2() / (n * (n - 1));
+    const double half = 2 * (i - first) < last - first ? -2 / n : 2 / n;
+    gyro_change += half * gyro;
+    accel_change += half * accel;
   }
+  rest.gyro_variance = with_drift(rest.gyro_variance, gyro_change);
+  rest.accel_variance = with_drift(rest.accel_variance, accel_change);
   return rest;
 }
 

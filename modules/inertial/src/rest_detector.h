@@ -17,7 +17,8 @@ struct RestBlock {
   Eigen::Vector3d accel_b = Eigen::Vector3d::Zero();  ///< [m/s^2]
 };
 
-/// Means over a rest and the variances of these means as the scatter of the blocks shows them.
+/// Means over a rest and the variances of these means: from the scatter of the blocks or, where a
+/// drift stands out of it, from the difference of the halves.
 struct RestMeans {
   int64_t begin_ns = 0;
   int64_t end_ns = 0;
@@ -45,6 +46,8 @@ class RestDetector {
   bool ended() const { return ended_; }
   /// Only when established; the last second is left out once it has ended.
   RestMeans means() const;
+  /// The same over the last seconds only, where biases are those of the drive that follows.
+  RestMeans recent_means() const;
   /// The first fix in the rest, where a start may lie.
   std::optional<GnssFix> first_fix() const;
 
@@ -53,6 +56,8 @@ class RestDetector {
   double longest_s() const { return longest_s_; }  ///< for messages
 
  private:
+  std::size_t blocks_used() const;
+  RestMeans means_over(std::size_t first, std::size_t last) const;
   void end_block();
   bool is_still(const RestBlock& block) const;
   bool moved(const GnssFix& fix) const;

@@ -20,6 +20,7 @@ class AlignmentOptions : public Configurable {
   double min_speed_m_s = 3.0;       ///< slower, a course says nothing about the heading
   double max_course_sigma_deg = 3;  ///< of one course, from the fixes' sigmas
   double max_turn_rate_deg_s = 6;   ///< faster, the vehicle is not straight
+  double mounting_sigma_deg = 0.3;  ///< course against forward axis: mounting, crab angle
   double min_rest_s = 3;            ///< shorter, a rest is not used
   double max_rest_s = 300;          ///< how far back a start may lie; bounds the memory
 
