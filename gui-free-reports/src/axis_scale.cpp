@@ -9,6 +9,7 @@ namespace {
 
 constexpr double kTypicalShare = 0.1;  // of the numbers that RangeRole::typical ignores, each side
 constexpr double kYPadding = 0.06;     // of the range, above and below
+constexpr double kBarPadding = 0.12;   // the same where numbers stand above bars
 
 /// The finite numbers that an axis has to show.
 class Extent {
@@ -118,7 +119,7 @@ Span y_span(const Panel& panel) {
   Extent extent(panel.y.kind == AxisKind::log);
   for (const Series& series : panel.series) add_y(series, extent);
   if (has_bars(panel) && panel.y.kind != AxisKind::log) extent.add(0);
-  return automatic_span(panel.y, extent, kYPadding);
+  return automatic_span(panel.y, extent, has_bars(panel) ? kBarPadding : kYPadding);
 }
 
 AxisScale::AxisScale(const Axis& axis, Span span, double at_min, double at_max)

@@ -168,11 +168,21 @@ class LayoutMaker {
     y = widen(y, unit * plot.height);
   }
 
-  /// As many ticks as have room side by side.
+  bool fits(const Ticks& ticks, int width) {
+    return 1.35 * label_width(ticks) * double(labelled(ticks)) < width;
+  }
+
+  /// As many ticks as have room side by side; three if the usual spacing gives fewer.
   Ticks x_ticks(const AxisScale& scale, int width) {
-    for (int count = std::max(2, int(width / kSpacePerXTick)); count > 1; --count) {
+    const int wanted = std::max(2, int(width / kSpacePerXTick));
+    const bool few = labelled(scale.ticks(wanted)) < 3;
+    for (int count = wanted + 1; few && count <= wanted + 2; ++count) {
       Ticks ticks = scale.ticks(count);
-      if (1.35 * label_width(ticks) * double(labelled(ticks)) < width) return ticks;
+      if (labelled(ticks) >= 3 && fits(ticks, width)) return ticks;
+    }
+    for (int count = wanted; count > 1; --count) {
+      Ticks ticks = scale.ticks(count);
+      if (fits(ticks, width)) return ticks;
     }
     return scale.ticks(1);
   }

@@ -42,15 +42,25 @@ double sample_width(const LegendEntry& entry) {
   return entry.sample == LegendEntry::Sample::marker ? kMarkerSample : kSample;
 }
 
+/// One line, or two dashes.
+std::vector<Polyline> line_sample(const LegendEntry& entry, double x, double middle) {
+  const double left = x + entry.size;
+  const double right = x + kSample - entry.size;
+  if (!entry.dashed) return {{{left, middle}, {right, middle}}};
+  const double gap = 0.14 * kSample;
+  return {{{left, middle}, {x + kSample / 2 - gap, middle}},
+          {{x + kSample / 2 + gap, middle}, {right, middle}}};
+}
+
 void draw_sample(Canvas& canvas, const LegendEntry& entry, double x, double middle) {
   const cv::Rect everywhere({}, canvas.image().size());
   const Rgb colour = rgb(entry.ink);
   const cv::Point2d centre(x + kMarkerSample / 2, middle);
   switch (entry.sample) {
     case LegendEntry::Sample::line:
-      return canvas.polylines({{{x + entry.size, middle}, {x + kSample - entry.size, middle}}},
+      return canvas.polylines(line_sample(entry, x, middle),
                               {colour, std::max(1.6, entry.size) * kPixelsPerPoint,
-                               std::max(entry.opacity, 0.5), entry.dashed},
+                               std::max(entry.opacity, 0.5), false},
                               everywhere);
     case LegendEntry::Sample::marker:
       return canvas.markers({centre}, entry.shape, std::max(5.5, entry.size) * kPixelsPerPoint,

@@ -32,7 +32,7 @@ Polyline rectangle(double left, double top, double right, double bottom) {
   return {{left, top}, {right, top}, {right, bottom}, {left, bottom}};
 }
 
-bool is_dark(Rgb c) { return 0.299 * c.red + 0.587 * c.green + 0.114 * c.blue < 140; }
+bool is_dark(Rgb c) { return 0.299 * c.red + 0.587 * c.green + 0.114 * c.blue < 120; }
 
 class PanelPainter {
  public:
@@ -46,12 +46,13 @@ class PanelPainter {
       grid();
     }
     shades();
+    for (const ReferenceLine& line : panel_.lines) reference_line(line);
     size_t bar_group = 0;
     for (const Series& series : panel_.series) {
       paint_series(series, bar_group);
       if (series.mark == Mark::bars) ++bar_group;
     }
-    for (const ReferenceLine& line : panel_.lines) reference_line(line);
+    for (const ReferenceLine& line : panel_.lines) reference_label(line);
     axes();
     for (const Annotation& annotation : panel_.annotations) annotate(annotation);
     if (panel_.scale_bar) scale_bar();
@@ -335,21 +336,48 @@ class PanelPainter {
 
   // ---- foreground
 
+  bool is_shown(const ReferenceLine& line) const {
+    return (line.direction == Direction::horizontal ? placed_.y : placed_.x).shows(line.at);
+  }
+
   void reference_line(const ReferenceLine& line) {
+    if (!is_shown(line)) return;
     const bool level = line.direction == Direction::horizontal;
     const double at = level ? y(line.at) : x(line.at);
-    if (!std::isfinite(at) || !(level ? placed_.y : placed_.x).shows(line.at)) return;
     const Polyline ends = level ? Polyline{{double(plot_.x), at}, {double(plot_.br().x), at}}
                                 : Polyline{{at, double(plot_.br().y)}, {at, double(plot_.y)}};
     canvas_.polylines({ends}, {rgb(line.ink), 1.1 * kPixelsPerPoint, 1, line.dashed}, plot_);
-    TextStyle style =
-        text_style(style::kNotePoints, rgb(line.ink), AlignX::right, AlignY::baseline);
+  }
+
+  void reference_label(const ReferenceLine& line) {
+    if (line.label.empty() || !is_shown(line)) return;
+    TextStyle style = text_style(style::kNotePoints, rgb(line.ink), AlignX::left, AlignY::baseline);
     style.halo = true;
-    if (level) {
-      canvas_.text(line.label, {plot_.br().x - millimetres(1.5), at - millimetres(1)}, style);
-      return;
-    }
     const double width = canvas_.typesetter().width(line.label, style::kNotePoints);
+    if (line.direction == Direction::horizontal) {
+      label_level(line, width, style);
+    } else {
+      label_upright(line, width, style);
+    }
+  }
+
+  /// Over the end of the line that has fewer data around it.
+  void label_level(const ReferenceLine& line, double width, TextStyle style) {
+    const double at = y(line.at);
+    const double left = plot_.x + millimetres(1.5);
+    const double right = plot_.br().x - millimetres(1.5) - width;
+    const auto data_around = [&](double begin) {
+      return points_inside(
+          grown(cv::Rect(int(begin), int(at - millimetres(4)), int(width), int(millimetres(4))),
+                millimetres(3)));
+    };
+    const double begin = data_around(right) <= data_around(left) ? right : left;
+    canvas_.text(line.label, {begin, at - millimetres(1)}, style);
+  }
+
+  /// Beside the upper end of the line.
+  void label_upright(const ReferenceLine& line, double width, TextStyle style) {
+    const double at = x(line.at);
     const bool fits_right = at + width + millimetres(3) < plot_.br().x;
     style.x = fits_right ? AlignX::left : AlignX::right;
     style.y = AlignY::top;
