@@ -3,51 +3,52 @@
 namespace foucault {
 namespace {
 
-Epoch to_epoch(const RtsNode& node) {
-  const StrapdownState& motion = node.filtered.motion;
-  Epoch epoch;
-  epoch.t_ns = motion.t_ns;
-  epoch.position = motion.position;
-  epoch.velocity_n = motion.v_n;
-  epoch.q_n_b = motion.q_n_b;
-  epoch.bias = node.filtered.bias;
-  epoch.covariance =
-      node.filtered_covariance.topLeftCorner<error_state::kSize, error_state::kSize>();
-  return epoch;
-}
-
-/// Fix minus smoothed antenna [m].
-Eigen::Vector3d postfit_n(const RtsNode& node, const Geodetic& antenna) {
-  const StrapdownState& motion = node.filtered.motion;
-  return displacement_n(motion.position, antenna, Place(motion.position)) -
-         motion.q_n_b * node.p_b_a;
-}
+template <class... F>
+struct Overloaded : F... {
+  using F::operator()...;
+};
+template <class... F>
+Overloaded(F...) -> Overloaded<F...>;
 
 }  // namespace
 
-void RtsSmoother::Keeper::epoch(const Epoch&) { kept_.emplace_back(NodeEpoch{recorder_.mark()}); }
+void RtsSmoother::Keeper::epoch(const Epoch&) {
+  if (rate_ == EpochRate::imu && !recorder_.at_node()) {
+    kept_.emplace_back(BetweenEpoch{recorder_.nodes().size() - 1, recorder_.state().motion});
+  } else {
+    kept_.emplace_back(NodeEpoch{recorder_.mark()});
+  }
+}
 
 void RtsSmoother::Keeper::fix(const FixResult& result) {
-  kept_.emplace_back(NodeFix{recorder_.mark(), result});
+  if (result.verdict == FixVerdict::used) {
+    kept_.emplace_back(NodeFix{recorder_.mark(), result});
+  } else {
+    kept_.emplace_back(result);
+  }
 }
 
 void RtsSmoother::Keeper::notice(const Notice& notice) { kept_.emplace_back(notice); }
 
-void RtsSmoother::Keeper::give_out(Sink& sink) const {
-  const std::vector<RtsNode>& nodes = recorder_.nodes();
-  for (const auto& kept : kept_) {
-    if (const auto* epoch = std::get_if<NodeEpoch>(&kept)) {
-      sink.epoch(to_epoch(nodes[epoch->node]));
-    } else if (const auto* fix = std::get_if<NodeFix>(&kept)) {
-      FixResult result = fix->result;
-      if (result.verdict == FixVerdict::used) {
-        result.postfit_n = postfit_n(nodes[fix->node], result.antenna);
-      }
-      sink.fix(result);
-    } else {
-      sink.notice(std::get<Notice>(kept));
-    }
-  }
+FixResult RtsSmoother::Keeper::smoothed(const NodeFix& fix, const SmoothedNode& node) const {
+  const StrapdownState& motion = node.state.motion;
+  FixResult result = fix.result;
+  result.postfit_n = displacement_n(motion.position, result.antenna, Place(motion.position)) -
+                     motion.q_n_b * recorder_.nodes()[fix.node].p_b_a;
+  return result;
+}
+
+void RtsSmoother::Keeper::give_out(Sink& sink) {
+  recorder_.mark();  // so that every epoch has a node after it
+  const std::vector<SmoothedNode> nodes = smooth(recorder_.nodes());
+  const auto give = Overloaded{[&](const NodeEpoch& e) { sink.epoch(to_epoch(nodes[e.node])); },
+                               [&](const BetweenEpoch& e) {
+                                 sink.epoch(between(nodes[e.node], nodes[e.node + 1], e.forward));
+                               },
+                               [&](const NodeFix& f) { sink.fix(smoothed(f, nodes[f.node])); },
+                               [&](const FixResult& f) { sink.fix(f); },
+                               [&](const Notice& n) { sink.notice(n); }};
+  for (const auto& kept : kept_) std::visit(give, kept);
 }
 
 RtsSmoother::RtsSmoother(const ImuNoise& imu, const EkfOptions& options, Aligner aligner,
@@ -57,14 +58,12 @@ RtsSmoother::RtsSmoother(const ImuNoise& imu, const EkfOptions& options, Aligner
 
 RtsSmoother::RtsSmoother(std::unique_ptr<RtsRecorder> recorder, Aligner aligner,
                          const NavigationRunOptions& run_options, Sink& sink)
-    : recorder_(*recorder),
-      keeper_(recorder_),
+    : keeper_(*recorder, run_options.rate),
       run_(std::move(recorder), std::move(aligner), run_options, keeper_),
       sink_(sink) {}
 
 void RtsSmoother::finish() {
   run_.finish();
-  smooth(recorder_.nodes());
   keeper_.give_out(sink_);
 }
 

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
+
 #include "foucault/ekf/rts_smoother.h"
 #include "foucault/simulation/simulated_source.h"
 #include "trip.h"
@@ -107,17 +109,15 @@ Batch least_squares(const LinearProblem& p) {
 
 TEST(Rts, EqualsBatchLeastSquaresOnALinearProblem) {
   const LinearProblem p = random_problem();
-  std::vector<RtsNode> nodes = filtered(p);
-  smooth(nodes);
+  const std::vector<SmoothedNode> nodes = smooth(filtered(p));
   const Batch batch = least_squares(p);
   const Vector15d units = sigmas().cwiseInverse();
   for (int k = 0; k < LinearProblem::kNodes; ++k) {
-    const Vector15d x = difference(origin(), nodes[k].filtered, kSize);
+    const Vector15d x = difference(origin(), nodes[k].state, kSize);
     const Vector15d dx = units.asDiagonal() * (x - batch.x.segment<15>(15 * k));
-    const Matrix15d dP =
-        units.asDiagonal() *
-        (nodes[k].filtered_covariance - batch.covariance.block<15, 15>(15 * k, 15 * k)) *
-        units.asDiagonal();
+    const Matrix15d dP = units.asDiagonal() *
+                         (nodes[k].covariance - batch.covariance.block<15, 15>(15 * k, 15 * k)) *
+                         units.asDiagonal();
     // A metre of the ellipsoid is linear to 1e-7.
     EXPECT_LT(dx.cwiseAbs().maxCoeff(), 1e-6) << "node " << k;
     EXPECT_LT(dP.cwiseAbs().maxCoeff(), 1e-9) << "node " << k;
@@ -127,12 +127,11 @@ TEST(Rts, EqualsBatchLeastSquaresOnALinearProblem) {
 TEST(Rts, NothingIsCarriedBackOverAStart) {
   std::vector<RtsNode> nodes = filtered(random_problem());
   nodes[3].begins_run = true;
-  std::vector<RtsNode> first_run(nodes.begin(), nodes.begin() + 3);
-  smooth(first_run);
-  smooth(nodes);
+  const std::vector<SmoothedNode> alone = smooth({nodes.begin(), nodes.begin() + 3});
+  const std::vector<SmoothedNode> both = smooth(nodes);
   for (int k = 0; k < 3; ++k) {
-    EXPECT_EQ(difference(first_run[k].filtered, nodes[k].filtered, kSize).norm(), 0);
-    EXPECT_EQ(first_run[k].filtered_covariance, nodes[k].filtered_covariance);
+    EXPECT_EQ(difference(alone[k].state, both[k].state, kSize).norm(), 0);
+    EXPECT_EQ(alone[k].covariance, both[k].covariance);
   }
 }
 
@@ -182,6 +181,16 @@ struct BothWays {
   Collected forward, smoothed;
 };
 
+Collected run_smoother(const ScenarioOptions& scenario, const ImuNoise& noise,
+                       const NavigationRunOptions& options = {}) {
+  Collected collected;
+  SimulatedSource source(scenario, noise);
+  Aligner aligner(given_alignment(source, scenario.start_ns()), noise, source.mounting());
+  RtsSmoother rts(noise, EkfOptions{}, std::move(aligner), options, collected);
+  feed(rts, source, scenario.start_ns());
+  return collected;
+}
+
 BothWays run_both_ways(const ScenarioOptions& scenario, const ImuNoise& noise) {
   const int64_t start_ns = scenario.start_ns();
   BothWays both;
@@ -192,10 +201,7 @@ BothWays run_both_ways(const ScenarioOptions& scenario, const ImuNoise& noise) {
                       NavigationRunOptions{}, both.forward);
     feed(run, source, start_ns);
   }
-  SimulatedSource source(scenario, noise);
-  Aligner aligner(given_alignment(source, start_ns), noise, source.mounting());
-  RtsSmoother rts(noise, EkfOptions{}, std::move(aligner), NavigationRunOptions{}, both.smoothed);
-  feed(rts, source, start_ns);
+  both.smoothed = run_smoother(scenario, noise);
   return both;
 }
 
@@ -254,6 +260,35 @@ TEST(RtsSmoother, PostfitsAreOfTheSmoothedSolution) {
   EXPECT_LT(postfit, innovation);
   // The fixes' own noise: 1, 1, 2 cm.
   EXPECT_NEAR(std::sqrt(postfit / count), 0.0245, 0.003);
+}
+
+TEST(RtsSmoother, EpochsBetweenNodesAreInterpolated) {
+  const ImuNoise noise = imu_preset("ADIS16465");
+  NavigationRunOptions every_increment;
+  every_increment.rate = EpochRate::imu;
+  const Collected interpolated = run_smoother(trip_options(6), noise, every_increment);
+  NavigationRunOptions many_nodes;
+  many_nodes.node_interval_s = 0.25;
+  const Collected exact = run_smoother(trip_options(6), noise, many_nodes);
+
+  std::map<int64_t, Epoch> by_stamp;
+  for (const Epoch& epoch : interpolated.epochs) by_stamp[epoch.t_ns] = epoch;
+  EXPECT_EQ(by_stamp.size(), interpolated.epochs.size());
+  int compared = 0;
+  for (const Epoch& epoch : exact.epochs) {
+    const auto found = by_stamp.find(epoch.t_ns);
+    ASSERT_NE(found, by_stamp.end());
+    const Epoch& other = found->second;
+    const Place place(epoch.position);
+    // Errors of some milliradians times a specific force that changes by m/s^2 within the second.
+    EXPECT_LT(displacement_n(epoch.position, other.position, place).norm(), 1e-3);
+    EXPECT_LT((epoch.velocity_n - other.velocity_n).norm(), 5e-3);
+    EXPECT_LT(epoch.q_n_b.angularDistance(other.q_n_b), 1e-4);
+    const Vector15d ratio = other.covariance.diagonal().cwiseQuotient(epoch.covariance.diagonal());
+    EXPECT_LT((ratio.array() - 1).abs().maxCoeff(), 0.2);
+    ++compared;
+  }
+  EXPECT_GT(compared, 500);
 }
 
 }  // namespace
