@@ -18,9 +18,10 @@ class TimeMapping : public Configurable {
  public:
   /// gps_week_sow: columns `week` and `time`; gps_sow: seconds of the week `gps_week`;
   /// gps: seconds since 1980-01-06; unix: seconds since 1970; seconds_of_day: of `date`, UTC;
-  /// boot: seconds after `boot_sow` in `gps_week`.
+  /// boot: since power-up, which was at second `boot_sow` of `gps_week`.
   std::string system = "gps_week_sow";
-  std::optional<int64_t> gps_week;
+  std::string unit = "s";  ///< of the `time` column: s | ms | us | ns
+  std::optional<double> gps_week;
   std::string date;  ///< YYYY-MM-DD
   std::optional<double> boot_sow;
   double offset_s = 0;

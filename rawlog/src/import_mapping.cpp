@@ -1,0 +1,122 @@
+#include "foucault/rawlog/import_mapping.h"
+
+#include <fmt/format.h>
+
+#include "foucault/core/error.h"
+#include "foucault/core/so3.h"
+
+namespace foucault {
+
+namespace {
+
+const std::vector<std::string> kAngleUnits{"deg", "rad"};
+const std::vector<std::string> kHeights{"ellipsoidal", "msl"};
+constexpr Range kAnyNumber{};
+
+/// "x", "+y", "-z" as a unit vector of the sensor.
+Eigen::RowVector3d axis(const std::string& name) {
+  const bool negative = !name.empty() && name.front() == '-';
+  const bool has_sign = negative || (!name.empty() && name.front() == '+');
+  const std::string letter = name.substr(has_sign ? 1 : 0);
+  if (letter != "x" && letter != "y" && letter != "z") {
+    throw UsageError(
+        fmt::format("imu.axes: '{}' is no axis; write x, y or z, with - if it looks "
+                    "the other way",
+                    name));
+  }
+  return (negative ? -1.0 : 1.0) * Eigen::RowVector3d::Unit(letter[0] - 'x');
+}
+
+Eigen::Matrix3d axes_matrix(const std::vector<std::string>& axes) {
+  if (axes.size() != 3) {
+    throw UsageError(
+        fmt::format("imu.axes has {} entries; name the sensor axes that look forward, "
+                    "right and down, e.g. [-x, y, -z]",
+                    axes.size()));
+  }
+  Eigen::Matrix3d R;
+  for (int row = 0; row < 3; ++row) R.row(row) = axis(axes[static_cast<size_t>(row)]);
+  const double determinant = R.determinant();
+  if (determinant < 0.5) {
+    throw UsageError(fmt::format(
+        "imu.axes [{}, {}, {}] {}; check the signs", axes[0], axes[1], axes[2],
+        determinant < -0.5 ? "is left-handed, no IMU sits like that" : "names an axis twice"));
+  }
+  return R;
+}
+
+}  // namespace
+
+void TimeMapping::fields(ConfigFields& f) {
+  f.text("system", system, {"gps_week_sow", "gps_sow", "gps", "unix", "seconds_of_day", "boot"},
+         "clock of the time column");
+  f.text("unit", unit, {"s", "ms", "us", "ns"}, "unit of the time column");
+  f.optional_number("gps_week", gps_week, {0, 10000}, "GPS week, for gps_sow and boot");
+  f.text("date", date, {}, "YYYY-MM-DD, UTC, for seconds_of_day");
+  f.optional_number("boot_sow", boot_sow, kAnyNumber,
+                    "second of the GPS week at which the boot clock was zero [s]");
+  f.number("offset_s", offset_s, kAnyNumber, "true time = stamp + offset_s [s]");
+}
+
+void TableMapping::fields(ConfigFields& f) {
+  f.text("file", file, {}, "relative to the folder of this mapping, or to --data");
+  f.text("separator", separator, {"comma", "semicolon", "tab", "space"}, "between columns");
+  f.flag("header", header, "the first line names the columns");
+  f.text_map("columns", columns, "role: name in the header, or number from 1");
+  f.section("time", time, "clock");
+}
+
+void ImuMapping::fields(ConfigFields& f) {
+  TableMapping::fields(f);
+  f.text("gyro_unit", gyro_unit, {"rad_s", "deg_s"}, "unit of the angular rates");
+  f.text("accel_unit", accel_unit, {"m_s2", "g"}, "unit of the specific forces");
+  f.texts("axes", axes, "sensor axes that look forward, right, down, e.g. [-x, y, -z]");
+  f.vector3("mounting_rpy_deg", mounting_rpy_deg,
+            "roll, pitch, heading of the sensor, on those axes, in the vehicle [deg]");
+}
+
+Mounting ImuMapping::mounting() const {
+  const Eigen::Vector3d rpy = mounting_rpy_deg * (M_PI / 180);
+  const Eigen::Quaterniond axes_turn(axes_matrix(axes));
+  return {(so3::from_euler({rpy.x(), rpy.y(), rpy.z()}) * axes_turn).normalized()};
+}
+
+void OriginMapping::fields(ConfigFields& f) {
+  f.optional_number("latitude_deg", latitude_deg, {-90, 90}, "of the local frame's origin [deg]");
+  f.optional_number("longitude_deg", longitude_deg, {-180, 360}, "of its origin [deg]");
+  f.optional_number("height_m", height_m, kAnyNumber, "of its origin, ellipsoidal [m]");
+}
+
+void GnssMapping::fields(ConfigFields& f) {
+  TableMapping::fields(f);
+  f.text("angle_unit", angle_unit, kAngleUnits, "unit of latitude and longitude");
+  f.text("height", height, kHeights, "what heights count from");
+  f.optional_number("geoid_separation_m", geoid_separation_m, kAnyNumber,
+                    "ellipsoidal height = msl + this [m]");
+  f.section("origin", origin, "of a local frame east, north, up");
+  f.numbers("sigma_m", sigma_m, kPositive, "north, east, down, where no column tells [m]");
+  f.flag("velocity", velocity, "read the velocity columns");
+  f.numbers("velocity_sigma_m_s", velocity_sigma_m_s, kPositive,
+            "north, east, down, where no column tells [m/s]");
+  f.text("quality", quality, {"unknown", "single", "differential", "ppp", "float_rtk", "fixed_rtk"},
+         "of all fixes, where no column tells");
+  f.text_map("quality_table", quality_table, "value in the column: quality, or none");
+}
+
+void ReferenceMapping::fields(ConfigFields& f) {
+  TableMapping::fields(f);
+  f.text("angle_unit", angle_unit, kAngleUnits, "unit of all angles");
+  f.text("height", height, kHeights, "what heights count from");
+  f.optional_number("geoid_separation_m", geoid_separation_m, kAnyNumber,
+                    "ellipsoidal height = msl + this [m]");
+  f.section("origin", origin, "of a local frame east, north, up");
+}
+
+void ImportMapping::fields(ConfigFields& f) {
+  f.section("imu", imu, "IMU table");
+  f.section("gnss", gnss, "GNSS table");
+  f.section("reference", reference, "reference trajectory, if there is one");
+  f.vector3("lever_arm_m", lever_arm_m, "IMU to antenna, forward, right, down [m]");
+}
+
+}  // namespace foucault

@@ -1,0 +1,183 @@
+#include "import_run.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+
+#include "foucault/core/error.h"
+#include "foucault/core/time.h"
+#include "mrpt_convert.h"
+
+namespace foucault::rawlog {
+
+namespace {
+
+/// An input with the record that comes next, its bad rows dealt with.
+class Input {
+ public:
+  Input(std::unique_ptr<RecordReader> reader, bool skip_bad_rows)
+      : reader_(std::move(reader)), skip_bad_rows_(skip_bad_rows) {
+    summary_.file = reader_->table().path();
+    advance();
+  }
+
+  const std::optional<Record>& head() const { return head_; }
+  double progress() const { return reader_->table().progress(); }
+
+  Record take() {
+    Record record = std::move(*head_);
+    if (!std::holds_alternative<WheelSpeed>(record)) count(stamp(record));
+    advance();
+    return record;
+  }
+
+  ImportStream summary() const {
+    ImportStream summary = summary_;
+    summary.without_fix = reader_->without_fix();
+    return summary;
+  }
+
+ private:
+  void advance() {
+    while (true) {
+      try {
+        head_ = reader_->next();
+        return;
+      } catch (const RowError& error) {
+        if (!skip_bad_rows_) {
+          throw DataError(fmt::format("{}, or skip bad rows (--skip-bad-rows)", error.what()));
+        }
+        if (summary_.skipped++ == 0) summary_.first_skipped = error.what();
+      }
+    }
+  }
+
+  void count(int64_t t_ns) {
+    if (summary_.written++ == 0) summary_.first_ns = t_ns;
+    summary_.last_ns = t_ns;
+  }
+
+  std::unique_ptr<RecordReader> reader_;
+  bool skip_bad_rows_;
+  std::optional<Record> head_;
+  ImportStream summary_;
+};
+
+/// Finishing touches and statistics on the way to the writer.
+class Output {
+ public:
+  Output(const std::string& path, const Mounting& mounting, const Eigen::Vector3d& lever_arm_v)
+      : writer_(path, mounting), p_b_a_(mounting.q_v_b.conjugate() * lever_arm_v) {
+    summary_.lever_arm_v = lever_arm_v;
+  }
+
+  void write(Record record) {
+    if (auto* fix = std::get_if<GnssFix>(&record)) {
+      fix->p_b_a = p_b_a_;
+      ++summary_.qualities[fix->quality];
+      if (fix->velocity_n) ++summary_.with_velocity;
+    } else if (std::holds_alternative<WheelSpeed>(record)) {
+      ++summary_.wheel_speeds;
+    }
+    writer_.write(record);
+  }
+
+  void finish() { writer_.finish(); }
+  ImportSummary& summary() { return summary_; }
+
+ private:
+  RawlogWriter writer_;
+  Eigen::Vector3d p_b_a_;
+  ImportSummary summary_;
+};
+
+Input* earliest(Input& imu, Input& gnss, std::optional<Input>& reference) {
+  Input* first = nullptr;
+  const std::array<Input*, 3> inputs{&gnss, reference ? &*reference : nullptr, &imu};
+  for (Input* input : inputs) {
+    if (input == nullptr || !input->head()) continue;
+    if (first == nullptr || stamp(*input->head()) < stamp(*first->head())) first = input;
+  }
+  return first;
+}
+
+void check_not_empty(const ImportStream& stream, const char* what) {
+  if (stream.written > 0) return;
+  throw DataError(fmt::format(
+      "'{}' has no usable {} row ({} skipped, {} without a position){}{}", stream.file, what,
+      stream.skipped, stream.without_fix,
+      stream.first_skipped.empty() ? "; check the file" : "; the first: ", stream.first_skipped));
+}
+
+void check_overlap(const ImportStream& imu, const ImportStream& other, const char* what) {
+  if (other.first_ns <= imu.last_ns && imu.first_ns <= other.last_ns) return;
+  throw DataError(fmt::format(
+      "IMU ({} to {}) and {} ({} to {}) do not overlap; check week, time system and offsets of "
+      "'{}' and '{}'",
+      describe_stamp(imu.first_ns), describe_stamp(imu.last_ns), what,
+      describe_stamp(other.first_ns), describe_stamp(other.last_ns), imu.file, other.file));
+}
+
+void check(const ImportSummary& summary) {
+  check_not_empty(summary.imu, "IMU");
+  check_not_empty(summary.gnss, "GNSS");
+  check_overlap(summary.imu, summary.gnss, "GNSS");
+  if (!summary.reference) return;
+  check_not_empty(*summary.reference, "reference");
+  check_overlap(summary.imu, *summary.reference, "reference");
+}
+
+}  // namespace
+
+void StampOrder::check(const Row& row, int64_t t_ns) {
+  if (last_ns_ && t_ns <= *last_ns_) {
+    row.fail(
+        fmt::format("the stamp {} does not come after the one before it, {}; sort the file "
+                    "by time and remove repeated rows",
+                    describe_stamp(t_ns), describe_stamp(*last_ns_)));
+  }
+  last_ns_ = t_ns;
+}
+
+ImportSummary run_import(const ImportOptions& options, ImportInputs inputs) {
+  constexpr int64_t kRecordsPerReport = 2000;
+  Input imu(std::move(inputs.imu), options.skip_bad_rows);
+  Input gnss(std::move(inputs.gnss), options.skip_bad_rows);
+  std::optional<Input> reference;
+  if (inputs.reference) reference.emplace(std::move(inputs.reference), options.skip_bad_rows);
+
+  Output output(options.out, inputs.mounting, inputs.lever_arm_v);
+  int64_t records = 0;
+  while (Input* input = earliest(imu, gnss, reference)) {
+    output.write(input->take());
+    if (options.progress && ++records % kRecordsPerReport == 0) options.progress(imu.progress());
+  }
+  ImportSummary& summary = output.summary();
+  summary.imu = imu.summary();
+  summary.gnss = gnss.summary();
+  if (reference) summary.reference = reference->summary();
+  check(summary);
+  output.finish();
+  if (options.progress) options.progress(1);
+  return summary;
+}
+
+Geodetic checked_position(const Row& row, double latitude, double longitude, double height) {
+  if (std::abs(latitude) > M_PI / 2 || std::abs(longitude) > 2 * M_PI) {
+    row.fail(
+        fmt::format("latitude {:.9g} deg, longitude {:.9g} deg are no place on Earth; check "
+                    "columns and units, correct or remove the row",
+                    latitude * 180 / M_PI, longitude * 180 / M_PI));
+  }
+  return {latitude, longitude, height};
+}
+
+int64_t gps_stamp(int64_t week, int64_t tow_ns) {
+  constexpr int64_t kWeekNs = 604'800 * kNanosecondsPerSecond;
+  int64_t weeks = tow_ns / kWeekNs;
+  if (tow_ns % kWeekNs < 0) --weeks;
+  return gps_to_unix_ns(GpsTime{static_cast<int>(week + weeks), tow_ns - weeks * kWeekNs});
+}
+
+}  // namespace foucault::rawlog

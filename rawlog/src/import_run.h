@@ -1,0 +1,51 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "foucault/core/interfaces.h"
+#include "foucault/rawlog/import.h"
+#include "foucault/rawlog/rawlog_writer.h"
+#include "text_table.h"
+
+namespace foucault::rawlog {
+
+/// One input file of an import. next() throws RowError for a bad row and goes on behind it.
+class RecordReader {
+ public:
+  virtual ~RecordReader() = default;
+  virtual std::optional<Record> next() = 0;
+  virtual const TextTable& table() const = 0;
+  /// Rows in which the receiver says it has no position.
+  virtual int64_t without_fix() const { return 0; }
+};
+
+/// Stamps of a stream: each after the one before.
+class StampOrder {
+ public:
+  void check(const Row& row, int64_t t_ns);
+
+ private:
+  std::optional<int64_t> last_ns_;
+};
+
+/// The inputs of an import, ready to be read.
+struct ImportInputs {
+  std::unique_ptr<RecordReader> imu;
+  std::unique_ptr<RecordReader> gnss;
+  std::unique_ptr<RecordReader> reference;  ///< may be null
+  Mounting mounting;
+  Eigen::Vector3d lever_arm_v = Eigen::Vector3d::Zero();  ///< IMU to antenna [m]
+};
+
+/// Merges the inputs by stamp into options.out.
+ImportSummary run_import(const ImportOptions& options, ImportInputs inputs);
+
+/// Latitude, longitude [rad], height [m] within their ranges, else a RowError.
+Geodetic checked_position(const Row& row, double latitude, double longitude, double height);
+
+/// A stamp from GPS week and time in it [ns], which may lie outside one week.
+int64_t gps_stamp(int64_t week, int64_t tow_ns);
+
+}  // namespace foucault::rawlog
