@@ -1,9 +1,9 @@
 #include "moving_alignment.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
-#include <vector>
 
 #include "foucault/core/so3.h"
 #include "foucault/core/time.h"
@@ -77,14 +77,14 @@ struct AxisFilter {
 
 /// Three axes, and how the course turns along the way.
 struct MotionFilter {
-  std::vector<AxisFilter> axes;
+  std::array<AxisFilter, 3> axes;
   int fixes = 0;
   double fastest_turn = 0;
 
-  explicit MotionFilter(const GnssFix& first) {
-    for (int axis = 0; axis < 3; ++axis) {
-      axes.emplace_back(first.position_covariance(axis, axis));
-    }
+  explicit MotionFilter(const GnssFix& first)
+      : axes{AxisFilter(first.position_covariance(0, 0)),
+             AxisFilter(first.position_covariance(1, 1)),
+             AxisFilter(first.position_covariance(2, 2))} {
     use_velocity(first);
   }
 

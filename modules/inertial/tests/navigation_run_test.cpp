@@ -1,0 +1,474 @@
+#include "foucault/inertial/navigation_run.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "foucault/core/error.h"
+#include "foucault/core/time.h"
+#include "foucault/geodesy/local_frame.h"
+#include "test_drive.h"
+
+namespace foucault {
+namespace {
+
+using Eigen::Vector3d;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using testing::kDeg;
+
+constexpr int64_t kStart = 1'700'000'000'000'000'000;
+constexpr int64_t kMs = 1'000'000;
+const Geodetic kPlace{48 * kDeg, 9 * kDeg, 300};
+
+int64_t at(double ms) { return kStart + static_cast<int64_t>(ms * kMs); }
+double ms_of(int64_t t_ns) { return static_cast<double>(t_ns - kStart) / kMs; }
+
+/// What a run asked of its navigator, in order; times in ms after the start.
+struct Log {
+  std::vector<std::string> calls;
+  std::vector<ImuIncrement> propagated;
+  std::vector<Epoch> starts;
+  std::vector<GnssFix> updates;
+
+  void add(const char* what, double ms) {
+    calls.push_back(std::string(what) + "@" + std::to_string(static_cast<int>(std::lround(ms))));
+  }
+};
+
+/// Stands still at kPlace; innovations as it is told.
+class FakeNavigator : public Navigator {
+ public:
+  explicit FakeNavigator(Log& log) : log_(log) {}
+
+  void start(const Epoch& initial) override {
+    log_.starts.push_back(initial);
+    now_ns_ = initial.t_ns;
+    log_.add("start", ms_of(now_ns_));
+  }
+  void propagate(const ImuIncrement& increment) override {
+    EXPECT_EQ(increment.t_begin_ns, now_ns_) << "a propagation must begin where the last ended";
+    log_.propagated.push_back(increment);
+    now_ns_ = increment.t_end_ns;
+  }
+  Innovation innovation(const GnssFix& fix) const override {
+    EXPECT_EQ(fix.t_ns, now_ns_);
+    Innovation result;
+    result.value_n = LocalFrame(kPlace).to_local(fix.antenna);
+    result.covariance = fix.position_covariance;
+    return result;
+  }
+  void update(const GnssFix& fix) override {
+    EXPECT_EQ(fix.t_ns, now_ns_);
+    log_.updates.push_back(fix);
+    log_.add("update", ms_of(now_ns_));
+  }
+  void hold() override { log_.add("hold", ms_of(now_ns_)); }
+  Epoch epoch() const override {
+    Epoch epoch;
+    epoch.t_ns = now_ns_;
+    epoch.position = kPlace;
+    return epoch;
+  }
+
+ private:
+  Log& log_;
+  int64_t now_ns_ = 0;
+};
+
+struct RecordingSink : Sink {
+  std::vector<double> epochs_ms;
+  std::vector<FixResult> fixes;
+  std::vector<Notice> notices;
+  void epoch(const Epoch& e) override { epochs_ms.push_back(ms_of(e.t_ns)); }
+  void fix(const FixResult& f) override { fixes.push_back(f); }
+  void notice(const Notice& n) override { notices.push_back(n); }
+};
+
+GnssFix fix_at(double ms, const Vector3d& offset_n = Vector3d::Zero(), double sigma = 0.1) {
+  GnssFix fix;
+  fix.t_ns = at(ms);
+  fix.antenna = LocalFrame(kPlace).to_geodetic(offset_n);
+  fix.position_covariance = sigma * sigma * Eigen::Matrix3d::Identity();
+  fix.velocity_n = Vector3d::Zero();
+  fix.velocity_covariance = 0.01 * Eigen::Matrix3d::Identity();
+  fix.quality = FixQuality::fixed_rtk;
+  return fix;
+}
+
+ImuIncrement increment_between(double begin_ms, double end_ms) {
+  ImuIncrement increment;
+  increment.t_begin_ns = at(begin_ms);
+  increment.t_end_ns = at(end_ms);
+  increment.dtheta_b = Vector3d(0.1, 0, 0) * increment.dt();
+  increment.dvel_b = Vector3d(0, 0, -9.8) * increment.dt();
+  return increment;
+}
+
+/// A run aligned at 0 ms by given angles (and a first increment up to 10 ms).
+class NavigationRunTest : public ::testing::Test {
+ protected:
+  NavigationRun& run() {
+    if (!run_) {
+      AlignmentOptions alignment;
+      alignment.mode = "given";
+      alignment.roll_deg = alignment.pitch_deg = alignment.heading_deg = 0;
+      run_ = std::make_unique<NavigationRun>(
+          std::make_unique<FakeNavigator>(log_),
+          Aligner(alignment, imu_preset("ADIS16465"), Mounting{}), options_, sink_);
+    }
+    return *run_;
+  }
+
+  /// Aligned at 10 ms, when the first fix meets known increments.
+  void align() {
+    feed_imu(0, 10);
+    run().process(fix_at(10));
+    ASSERT_EQ(log_.starts.size(), 1u);
+    log_.calls.clear();
+  }
+
+  void feed_imu(double begin_ms, double end_ms, double step_ms = 10) {
+    for (double t = begin_ms; t < end_ms - 0.5; t += step_ms) {
+      run().process(increment_between(t, t + step_ms));
+    }
+  }
+
+  std::string error_of_finish() {
+    try {
+      run().finish();
+    } catch (const DataError& error) {
+      return error.what();
+    }
+    return "";
+  }
+
+  NavigationRunOptions options_;
+  Log log_;
+  RecordingSink sink_;
+  std::unique_ptr<NavigationRun> run_;
+};
+
+TEST_F(NavigationRunTest, SplitsIncrementsAtFixesAndRequests) {
+  align();
+  run().process(fix_at(23));
+  run().process(EpochRequest{at(26)});
+  run().process(increment_between(10, 20));
+  run().process(increment_between(20, 30));
+  std::vector<double> ends;
+  Vector3d dtheta = Vector3d::Zero();
+  for (const ImuIncrement& increment : log_.propagated) {
+    ends.push_back(ms_of(increment.t_end_ns));
+    dtheta += increment.dtheta_b;
+  }
+  EXPECT_THAT(ends, ElementsAre(20, 23, 26, 30));
+  EXPECT_NEAR(dtheta.x(), 0.1 * 0.02, 1e-15);
+  EXPECT_THAT(log_.calls, ElementsAre("update@23"));
+  EXPECT_THAT(sink_.epochs_ms, ElementsAre(10, 23, 26));
+}
+
+TEST_F(NavigationRunTest, FixAtTheEndOfAnIncrementNeedsNoSplit) {
+  align();
+  run().process(fix_at(20));
+  run().process(increment_between(10, 20));
+  EXPECT_EQ(log_.propagated.size(), 1u);
+  EXPECT_THAT(log_.calls, ElementsAre("update@20"));
+}
+
+TEST_F(NavigationRunTest, StartsWithAnIncrementThatReachesTheFix) {
+  feed_imu(0, 10);
+  run().process(fix_at(20));
+  run().process(increment_between(10, 20));  // ends where the run began
+  run().process(increment_between(20, 30));
+  ASSERT_EQ(log_.propagated.size(), 1u);
+  EXPECT_EQ(ms_of(log_.propagated[0].t_begin_ns), 20);
+}
+
+TEST_F(NavigationRunTest, TwoFixesAtOneStampAreBothUsedAndGiveOneEpoch) {
+  align();
+  run().process(fix_at(15));
+  run().process(fix_at(15, Vector3d(0.1, 0, 0)));
+  feed_imu(10, 30);
+  EXPECT_THAT(log_.calls, ElementsAre("update@15", "update@15"));
+  EXPECT_THAT(sink_.epochs_ms, ElementsAre(10, 15));
+}
+
+TEST_F(NavigationRunTest, HoldsWhenNoFixComes) {
+  align();
+  feed_imu(10, 3500);
+  EXPECT_THAT(log_.calls, ElementsAre("hold@1010", "hold@2010", "hold@3010"));
+  EXPECT_THAT(sink_.epochs_ms, ElementsAre(10, 1010, 2010, 3010));
+}
+
+TEST_F(NavigationRunTest, AFixInTimeTakesThePlaceOfTheHold) {
+  align();
+  run().process(fix_at(1010));
+  feed_imu(10, 1500);
+  EXPECT_THAT(log_.calls, ElementsAre("update@1010"));
+}
+
+TEST_F(NavigationRunTest, WaitsForAFixWhoseStampJitters) {
+  align();
+  std::vector<double> fixes{1010, 2012, 3009.5, 4011};
+  double now = 10;
+  for (const double ms : fixes) {
+    const double before = std::ceil(ms / 10) * 10 - 10;  // the fix precedes what reaches it
+    feed_imu(now, before);
+    now = before;
+    run().process(fix_at(ms));
+  }
+  feed_imu(now, 4100);
+  // The first hold is due at 2010, when fixes are known to come a second apart (exactly so far).
+  EXPECT_THAT(log_.calls,
+              ElementsAre("update@1010", "hold@2010", "update@2012", "update@3010", "update@4011"));
+}
+
+TEST_F(NavigationRunTest, RequestsAreNoNodes) {
+  align();
+  run().process(EpochRequest{at(900)});
+  feed_imu(10, 1100);
+  EXPECT_THAT(log_.calls, ElementsAre("hold@1010"));
+  EXPECT_THAT(sink_.epochs_ms, ElementsAre(10, 900, 1010));
+}
+
+TEST_F(NavigationRunTest, ImuRateGivesAnEpochAtEachIncrement) {
+  options_.rate = EpochRate::imu;
+  align();
+  run().process(fix_at(25));
+  feed_imu(10, 40);
+  EXPECT_THAT(sink_.epochs_ms, ElementsAre(10, 20, 25, 30, 40));
+}
+
+TEST_F(NavigationRunTest, BridgesAHoleWithTheRatesBeforeItAndMoreNoise) {
+  align();
+  feed_imu(10, 500);
+  run().process(fix_at(1505));
+  log_.propagated.clear();
+  run().process(increment_between(2500, 2510));
+  double extra = 0, angle = 0, covered = 0;
+  for (const ImuIncrement& increment : log_.propagated) {
+    if (increment.t_end_ns > at(2500)) continue;
+    extra = increment.extra_gyro_noise_density;
+    angle += increment.dtheta_b.x();
+    covered += increment.dt();
+    // Random-walk angle of this density over the hole equals a constant rate error: s sqrt(T).
+    EXPECT_NEAR(extra, options_.gaps.rate_sigma_deg_s * kDeg * std::sqrt(2.0), 1e-9);
+    EXPECT_NEAR(increment.extra_accel_noise_density,
+                options_.gaps.accel_sigma_m_s2 * std::sqrt(2.0), 1e-9);
+  }
+  EXPECT_NEAR(covered, 2, 1e-9);
+  EXPECT_NEAR(angle, 0.2, 1e-9);
+  EXPECT_EQ(log_.propagated.back().extra_gyro_noise_density, 0);
+  EXPECT_THAT(log_.calls, ElementsAre("hold@1010", "update@1505", "hold@2505"));
+  ASSERT_GE(sink_.notices.size(), 2u);
+  EXPECT_EQ(sink_.notices.back().kind, NoticeKind::imu_gap);
+}
+
+TEST_F(NavigationRunTest, AlignsAnewAfterALongHole) {
+  align();
+  feed_imu(10, 500);
+  feed_imu(15000, 15100);
+  run().process(fix_at(15105));
+  feed_imu(15100, 15200);
+  ASSERT_EQ(log_.starts.size(), 2u);
+  EXPECT_EQ(ms_of(log_.starts[1].t_ns), 15105);
+  std::vector<NoticeKind> kinds;
+  for (const Notice& notice : sink_.notices) kinds.push_back(notice.kind);
+  EXPECT_THAT(kinds, ElementsAre(NoticeKind::aligned, NoticeKind::imu_gap, NoticeKind::realigned));
+}
+
+TEST_F(NavigationRunTest, OverlappingAndEmptyIncrementsAreErrors) {
+  align();
+  feed_imu(10, 30);
+  EXPECT_THROW(run().process(increment_between(20, 40)), DataError);
+  EXPECT_THROW(run().process(increment_between(40, 40)), DataError);
+  try {
+    run().process(increment_between(25, 35));
+    FAIL() << "accepted";
+  } catch (const DataError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("1700000000.025"));
+  }
+}
+
+TEST_F(NavigationRunTest, OutlierIsGatedAndReported) {
+  align();
+  run().process(fix_at(20, Vector3d(10, 0, 0)));
+  run().process(fix_at(30, Vector3d(0.1, -0.1, 0)));
+  feed_imu(10, 40);
+  ASSERT_EQ(sink_.fixes.size(), 2u);
+  EXPECT_EQ(sink_.fixes[0].verdict, FixVerdict::gated);
+  EXPECT_NEAR(sink_.fixes[0].innovation_n.x(), 10, 1e-6);
+  EXPECT_EQ(sink_.fixes[1].verdict, FixVerdict::used);
+  EXPECT_NEAR(sink_.fixes[1].postfit_n.x(), 0.1, 1e-6);
+  EXPECT_THAT(log_.calls, ElementsAre("update@30"));
+}
+
+TEST_F(NavigationRunTest, GateHasTheProbabilityItNames) {
+  // 3 degrees of freedom: P(chi-square > 11.345) = 0.01.
+  options_.gnss.gate_false_alarm = 0.01;
+  align();
+  run().process(fix_at(20, Vector3d(0.1 * std::sqrt(11.35), 0, 0)));
+  run().process(fix_at(30, Vector3d(0, 0.1 * std::sqrt(11.34), 0)));
+  feed_imu(10, 40);
+  EXPECT_EQ(sink_.fixes[0].verdict, FixVerdict::gated);
+  EXPECT_EQ(sink_.fixes[1].verdict, FixVerdict::used);
+}
+
+TEST_F(NavigationRunTest, NoGateWhenSwitchedOff) {
+  options_.gnss.gate_false_alarm = 0;
+  align();
+  run().process(fix_at(20, Vector3d(1000, 0, 0)));
+  feed_imu(10, 40);
+  EXPECT_EQ(sink_.fixes[0].verdict, FixVerdict::used);
+}
+
+TEST_F(NavigationRunTest, ManyOutliersInARowAreBelieved) {
+  options_.gnss.reinstate_after = 3;
+  align();
+  for (int i = 2; i < 7; ++i) run().process(fix_at(10 * i, Vector3d(10, 0, 0)));
+  run().process(fix_at(70));                      // good: closes the gate again
+  run().process(fix_at(80, Vector3d(10, 0, 0)));  // an outlier like the first
+  feed_imu(10, 90);
+  std::vector<FixVerdict> verdicts;
+  for (const FixResult& result : sink_.fixes) verdicts.push_back(result.verdict);
+  const FixVerdict used = FixVerdict::used, gated = FixVerdict::gated;
+  EXPECT_THAT(verdicts, ElementsAre(gated, gated, gated, used, used, used, gated));
+}
+
+TEST_F(NavigationRunTest, FixesOfLowQualityAreLeftOut) {
+  options_.gnss.min_quality = "fixed_rtk";
+  align();
+  GnssFix fix = fix_at(20);
+  fix.quality = FixQuality::float_rtk;
+  run().process(fix);
+  feed_imu(10, 30);
+  ASSERT_EQ(sink_.fixes.size(), 1u);
+  EXPECT_EQ(sink_.fixes[0].verdict, FixVerdict::low_quality);
+  EXPECT_TRUE(log_.updates.empty());
+}
+
+TEST_F(NavigationRunTest, SigmasAreScaledAndFloored) {
+  options_.gnss.sigma_scale = 2;
+  options_.gnss.sigma_floor_m = 0.3;
+  align();
+  GnssFix fix = fix_at(20);
+  fix.position_covariance = Vector3d(0.01, 0.0025, 1).asDiagonal();
+  run().process(fix);
+  feed_imu(10, 30);
+  ASSERT_EQ(log_.updates.size(), 1u);
+  const Vector3d variance = log_.updates[0].position_covariance.diagonal();
+  EXPECT_NEAR(variance.x(), 0.09, 1e-12);
+  EXPECT_NEAR(variance.y(), 0.09, 1e-12);
+  EXPECT_NEAR(variance.z(), 4, 1e-12);
+}
+
+TEST_F(NavigationRunTest, FixesWithoutUsableSigmaAreCountedAndNoticedOnce) {
+  align();
+  GnssFix zero = fix_at(20);
+  zero.position_covariance.setZero();
+  GnssFix nan = fix_at(30);
+  nan.position_covariance(1, 1) = std::numeric_limits<double>::quiet_NaN();
+  GnssFix nowhere = fix_at(40);
+  nowhere.antenna.latitude = std::numeric_limits<double>::quiet_NaN();
+  for (const GnssFix& fix : {zero, nan, nowhere}) run().process(fix);
+  feed_imu(10, 50);
+  ASSERT_EQ(sink_.fixes.size(), 3u);
+  for (const FixResult& result : sink_.fixes) EXPECT_EQ(result.verdict, FixVerdict::bad_sigma);
+  int rejections = 0;
+  for (const Notice& notice : sink_.notices) {
+    rejections += notice.kind == NoticeKind::fix_rejected ? 1 : 0;
+  }
+  EXPECT_EQ(rejections, 1);
+  EXPECT_TRUE(log_.updates.empty());
+  run().finish();  // the fix it was aligned with was good
+}
+
+TEST_F(NavigationRunTest, LateFixIsReportedNotUsed) {
+  align();
+  feed_imu(10, 100);
+  run().process(fix_at(50));
+  ASSERT_EQ(sink_.fixes.size(), 1u);
+  EXPECT_EQ(sink_.fixes[0].verdict, FixVerdict::out_of_order);
+  EXPECT_TRUE(log_.updates.empty());
+}
+
+TEST_F(NavigationRunTest, FinishSaysThatThereIsNoImu) {
+  run().process(fix_at(10));
+  EXPECT_THAT(error_of_finish(), HasSubstr("no IMU data"));
+}
+
+TEST_F(NavigationRunTest, FinishSaysThatThereIsNoGnss) {
+  feed_imu(0, 100);
+  EXPECT_THAT(error_of_finish(), HasSubstr("no GNSS fix"));
+}
+
+TEST_F(NavigationRunTest, FinishSaysHowManyFixesWereUseless) {
+  feed_imu(0, 100);
+  for (int i = 0; i < 4; ++i) run().process(fix_at(110 + i, Vector3d::Zero(), 0));
+  feed_imu(100, 200);
+  const std::string error = error_of_finish();
+  EXPECT_THAT(error, HasSubstr("none of the 4 GNSS fixes"));
+  EXPECT_THAT(error, HasSubstr("4 with a sigma"));
+  EXPECT_THAT(error, HasSubstr("gnss.sigma_floor_m"));
+}
+
+TEST_F(NavigationRunTest, ZeroSigmaServesWithAFloor) {
+  options_.gnss.sigma_floor_m = 0.05;
+  feed_imu(0, 10);
+  run().process(fix_at(10, Vector3d::Zero(), 0));
+  run().finish();
+  EXPECT_EQ(log_.starts.size(), 1u);
+}
+
+TEST_F(NavigationRunTest, FinishSaysThatTimesDoNotOverlap) {
+  for (int i = 0; i < 4; ++i) run().process(fix_at(10 + i));
+  feed_imu(50000, 50100);
+  EXPECT_THAT(error_of_finish(), HasSubstr("do not overlap in time"));
+}
+
+TEST(NavigationRunWithRest, ReplaysWhatCameBeforeTheAlignment) {
+  testing::Sensors sensors;
+  const testing::DriveSimulator simulator(testing::rest_and_drive(20, 1.0), sensors);
+  Log log;
+  RecordingSink sink;
+  NavigationRunOptions options;
+  options.gnss.gate_false_alarm = 0;  // the fake navigator does not move along
+  NavigationRun run(std::make_unique<FakeNavigator>(log),
+                    Aligner(AlignmentOptions(), imu_preset("ADIS16465"), Mounting{}), options,
+                    sink);
+  int64_t fixes = 0, increments = 0;
+  for (const Measurement& m : simulator.stream()) {
+    fixes += std::holds_alternative<GnssFix>(m) ? 1 : 0;
+    increments += std::holds_alternative<ImuIncrement>(m) ? 1 : 0;
+    run.process(m);
+  }
+  run.finish();
+  ASSERT_EQ(log.starts.size(), 1u);
+  EXPECT_EQ(log.starts[0].t_ns, testing::DriveSimulator::kStart);
+  EXPECT_EQ(static_cast<int64_t>(log.updates.size()), fixes - 1);  // the first gave the position
+  EXPECT_EQ(static_cast<int64_t>(log.propagated.size()), increments);
+  EXPECT_EQ(static_cast<int64_t>(sink.epochs_ms.size()), fixes);
+  EXPECT_TRUE(std::is_sorted(sink.epochs_ms.begin(), sink.epochs_ms.end()));
+}
+
+TEST(GnssOptions, RoundTripAndRanges) {
+  GnssOptions options;
+  load_config_text(
+      "{min_quality: ppp, sigma_scale: 3, sigma_floor_m: 0.02, gate_false_alarm: 0.01,"
+      " reinstate_after: 7}",
+      "test", options);
+  GnssOptions again;
+  load_config_text(dump_config(options), "again", again);
+  EXPECT_EQ(again.min_quality, "ppp");
+  EXPECT_EQ(again.sigma_scale, 3);
+  EXPECT_EQ(again.sigma_floor_m, 0.02);
+  EXPECT_EQ(again.gate_false_alarm, 0.01);
+  EXPECT_EQ(again.reinstate_after, 7);
+  EXPECT_THROW(set_config("sigma_scale=0", options), UsageError);
+  EXPECT_THROW(set_config("gate_false_alarm=1", options), UsageError);
+}
+
+}  // namespace
+}  // namespace foucault
