@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -38,12 +37,6 @@ class Trip : public testing::Test {
   TestFolder folder_;
   std::string log_;
 };
-
-double root_mean_square(const std::vector<double>& values) {
-  double sum = 0;
-  for (const double value : values) sum += value * value;
-  return std::sqrt(sum / static_cast<double>(values.size()));
-}
 
 TEST(Help, NamesEveryCommandAndTeaches) {
   const Outcome help = foucault({"--help"});

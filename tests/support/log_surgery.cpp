@@ -14,14 +14,26 @@ using mrpt::obs::CObservation;
 using mrpt::obs::CObservationGPS;
 using mrpt::obs::CObservationIMU;
 
+namespace {
+
+/// Null at the end; a compressed stream knows of its end only after it.
+mrpt::serialization::CSerializable::Ptr next_object(mrpt::serialization::CArchive& archive) {
+  try {
+    return archive.ReadObject();
+  } catch (const mrpt::serialization::CExceptionEOF&) {
+    return nullptr;
+  }
+}
+
+}  // namespace
+
 void operate_on_log(const std::string& from, const std::string& to, const Operation& operate) {
   mrpt::io::CFileGZInputStream in;
   mrpt::io::CFileGZOutputStream out;
   if (!in.open(from) || !out.open(to)) throw std::runtime_error("cannot open " + from);
   auto reader = mrpt::serialization::archiveFrom(in);
   auto writer = mrpt::serialization::archiveFrom(out);
-  while (!in.checkEOF()) {
-    const mrpt::serialization::CSerializable::Ptr object = reader.ReadObject();
+  while (const mrpt::serialization::CSerializable::Ptr object = next_object(reader)) {
     auto* observation = dynamic_cast<CObservation*>(object.get());
     if (observation == nullptr || operate(*observation)) writer << *object;
   }
