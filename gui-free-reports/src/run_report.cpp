@@ -12,8 +12,10 @@
 namespace foucault::reports {
 namespace {
 
+/// To the nearest second.
 std::string utc_text(int64_t t_ns) {
-  const std::time_t seconds = static_cast<std::time_t>(t_ns / kNanosecondsPerSecond);
+  const int64_t rounded = (t_ns + kNanosecondsPerSecond / 2) / kNanosecondsPerSecond;
+  const std::time_t seconds = static_cast<std::time_t>(rounded);
   std::tm utc{};
   gmtime_r(&seconds, &utc);
   return fmt::format("{:04}-{:02}-{:02} {:02}:{:02}:{:02} UTC", utc.tm_year + 1900, utc.tm_mon + 1,
