@@ -2,6 +2,7 @@
 
 #include <ceres/solver.h>
 
+#include <cmath>
 #include <stdexcept>
 
 #include "foucault/core/time.h"
@@ -42,6 +43,21 @@ ceres::Solver::Options solver_options(const FgoOptions& options) {
   solver.logging_type = ceres::SILENT;
   return solver;
 }
+
+/// Stops when the step that was taken is known to be the last one that matters. The cost left is
+/// about what the quadratic model missed, |1 - actual/model| of the change; at 1e-6, a step of
+/// another thousandth of a sigma. Without this every solve ends with an iteration that only
+/// confirms.
+class StopWhenModelHolds final : public ceres::IterationCallback {
+ public:
+  ceres::CallbackReturnType operator()(const ceres::IterationSummary& iteration) override {
+    constexpr double kCostLeft = 1e-6;
+    const bool done =
+        iteration.iteration > 0 && iteration.step_is_successful &&
+        std::abs((1 - iteration.relative_decrease) * iteration.cost_change) < kCostLeft;
+    return done ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
+  }
+};
 
 /// Turns the position and velocity rows of a covariance from one local frame to another.
 Matrix15d turned(const Matrix15d& P, const Eigen::Matrix3d& R) {
@@ -88,7 +104,6 @@ void WindowNavigator::start(const Epoch& initial) {
   intervals_.clear();
   integrator_.reset();
   frame_.emplace(initial.position);
-  earth_ = earth_model(model_, *frame_);
 
   const NodeState x = to_node(initial, *frame_);
   Node& node = nodes_.emplace_back();
@@ -104,7 +119,9 @@ void WindowNavigator::start(const Epoch& initial) {
 void WindowNavigator::begin_interval() {
   open_ = Interval{};
   if (integrator_) open_.before = integrator_->previous();
-  integrator_.emplace(noise_, last_state().bias, nodes_.back().t_ns, open_.before);
+  const NodeState x = last_state();
+  earth_ = earth_model(model_, *frame_, x.p_w_b);
+  integrator_.emplace(noise_, x.bias, nodes_.back().t_ns, open_.before);
 }
 
 void WindowNavigator::propagate(const ImuIncrement& increment) {
@@ -173,8 +190,11 @@ void WindowNavigator::solve() {
 }
 
 void WindowNavigator::optimize() {
+  StopWhenModelHolds stop;
+  ceres::Solver::Options solver = solver_options(options_);
+  solver.callbacks.push_back(&stop);
   ceres::Solver::Summary summary;
-  ceres::Solve(solver_options(options_), problem_.get(), &summary);
+  ceres::Solve(solver, problem_.get(), &summary);
   if (!summary.IsSolutionUsable())
     throw std::runtime_error("the factor graph could not be solved: " + summary.message);
 }
@@ -186,10 +206,11 @@ bool WindowNavigator::reintegrate_moved_biases() {
     const Preintegration& pre = interval.factor->preintegration();
     const ImuBias bias = read_block(nodes_[i].x.data()).bias;
     if ((bias.gyro - pre.bias.gyro).norm() * pre.dt < kReintegrationAngle) continue;
+    const EarthModel earth = interval.factor->earth();
     Preintegrator integrator(noise_, bias, pre.t_begin_ns, interval.before);
     for (const ImuIncrement& increment : interval.increments) integrator.add(increment);
     problem_->RemoveResidualBlock(interval.block);
-    interval.factor = std::make_unique<PreintegrationFactor>(integrator.result(), earth_);
+    interval.factor = std::make_unique<PreintegrationFactor>(integrator.result(), earth);
     interval.block = problem_->AddResidualBlock(interval.factor.get(), nullptr, nodes_[i].x.data(),
                                                 nodes_[i + 1].x.data());
     moved = true;

@@ -27,6 +27,19 @@ Corrected correct(const Preintegration& pre, const ImuBias& bias) {
           pre.dv + pre.J_dv_bg * dg + pre.J_dv_ba * da, pre.dq * so3::exp(shift), shift};
 }
 
+/// What gravity does over T: velocity, position and the integral of position. Along the interval it
+/// changes by its gradient times the way, G v0 t.
+struct Fall {
+  Vector3d v, p, ip;
+  Fall(const NodeState& x0, const EarthModel& earth, double T) {
+    const Vector3d g = earth.gravity(x0.p_w_b);
+    const Vector3d g_dot = earth.gravity_gradient * x0.v_w_b;
+    v = T * g + T * T / 2 * g_dot;
+    p = T * T / 2 * g + T * T * T / 6 * g_dot;
+    ip = T * T * T / 6 * g;
+  }
+};
+
 /// All that residual and Jacobians share.
 struct Terms {
   Corrected z;
@@ -52,10 +65,10 @@ Terms evaluate(const NodeState& x0, const NodeState& x1, const Preintegration& p
   t.dp_shift = T * t.z.dp - 2 * pre.idp;
 
   const Vector3d moved = x1.p_w_b - x0.p_w_b;
-  const Vector3d integral_moved =
-      T * T * (x0.v_w_b / 2 + earth.g_w * (T / 6)) + t.R0t.transpose() * pre.idp;
-  t.p_seen = t.R0t * (moved - T * x0.v_w_b - (T * T / 2) * earth.g_w + 2 * w.cross(integral_moved));
-  t.v_seen = t.R0t * (x1.v_w_b - x0.v_w_b - T * earth.g_w + 2 * w.cross(moved));
+  const Fall fall(x0, earth, T);
+  const Vector3d integral_moved = T * T / 2 * x0.v_w_b + fall.ip + t.R0t.transpose() * pre.idp;
+  t.p_seen = t.R0t * (moved - T * x0.v_w_b - fall.p + 2 * w.cross(integral_moved));
+  t.v_seen = t.R0t * (x1.v_w_b - x0.v_w_b - fall.v + 2 * w.cross(moved));
   t.q_seen = x0.q_w_b.conjugate() * so3::exp(w * T) * x1.q_w_b;
 
   t.r.segment<3>(kPosition) = t.p_seen - (t.z.dp - t.a.cross(t.dp_shift));
@@ -70,7 +83,7 @@ void set_block(Matrix15d& J, int row, int column, const Matrix3d& block) {
   J.block<3, 3>(row, column) = block;
 }
 
-Matrix15d jacobian_x0(const Terms& t, const Preintegration& pre) {
+Matrix15d jacobian_x0(const Terms& t, const Preintegration& pre, const EarthModel& earth) {
   const double T = pre.dt;
   const Matrix3d A = so3::skew(t.a);
   const Matrix3d R0t_W = A * t.R0t;  // R0^T [w x] = [a x] R0^T
@@ -79,15 +92,18 @@ Matrix15d jacobian_x0(const Terms& t, const Preintegration& pre) {
   const Matrix3d Jr_inverse = so3::right_jacobian_inverse(r_q);
   Matrix15d J = Matrix15d::Zero();
 
-  set_block(J, kPosition, kPosition, -t.R0t);
-  set_block(J, kPosition, kVelocity, T * (T * R0t_W - t.R0t));
+  const Matrix3d R0t_G = t.R0t * earth.gravity_gradient;
+  const Matrix3d W_G = A * R0t_G;  // gravity in the Coriolis integral
+
+  set_block(J, kPosition, kPosition, -t.R0t - T * T / 2 * R0t_G + T * T * T / 3 * W_G);
+  set_block(J, kPosition, kVelocity, T * (T * R0t_W - t.R0t - T * T / 6 * R0t_G));
   set_block(J, kPosition, kAttitude,
             so3::skew(t.p_seen) - 2 * A * so3::skew(pre.idp) - so3::skew(t.dp_shift) * A);
   set_block(J, kPosition, kGyroBias, -I_TA * pre.J_dp_bg);
   set_block(J, kPosition, kAccelBias, -I_TA * pre.J_dp_ba);
 
-  set_block(J, kVelocity, kPosition, -2 * R0t_W);
-  set_block(J, kVelocity, kVelocity, -t.R0t);
+  set_block(J, kVelocity, kPosition, -2 * R0t_W - T * R0t_G);
+  set_block(J, kVelocity, kVelocity, -t.R0t - T * T / 2 * R0t_G);
   set_block(J, kVelocity, kAttitude, so3::skew(t.v_seen) - so3::skew(t.dv_shift) * A);
   set_block(J, kVelocity, kGyroBias, -I_TA * pre.J_dv_bg - A * pre.J_dp_bg);
   set_block(J, kVelocity, kAccelBias, -I_TA * pre.J_dv_ba - A * pre.J_dp_ba);
@@ -138,7 +154,7 @@ Vector15d boxminus(const NodeState& y, const NodeState& x) {
 MotionResidual motion_residual(const NodeState& x0, const NodeState& x1, const Preintegration& pre,
                                const EarthModel& earth) {
   const Terms t = evaluate(x0, x1, pre, earth);
-  return {t.r, jacobian_x0(t, pre), jacobian_x1(t)};
+  return {t.r, jacobian_x0(t, pre, earth), jacobian_x1(t)};
 }
 
 Vector15d motion_residual_value(const NodeState& x0, const NodeState& x1, const Preintegration& pre,
@@ -153,13 +169,13 @@ NodeState predict(const NodeState& x0, const Preintegration& pre, const EarthMod
   const Vector3d a = x0.q_w_b.conjugate() * w;
   const Vector3d dp = z.dp - a.cross(T * z.dp - 2 * pre.idp);
   const Vector3d dv = z.dv - a.cross(T * z.dv - z.dp);
-  const Vector3d integral_moved = T * T * (x0.v_w_b / 2 + earth.g_w * (T / 6)) + x0.q_w_b * pre.idp;
+  const Fall fall(x0, earth, T);
+  const Vector3d integral_moved = T * T / 2 * x0.v_w_b + fall.ip + x0.q_w_b * pre.idp;
 
   NodeState x1;
-  const Vector3d moved =
-      T * x0.v_w_b + (T * T / 2) * earth.g_w + x0.q_w_b * dp - 2 * w.cross(integral_moved);
+  const Vector3d moved = T * x0.v_w_b + fall.p + x0.q_w_b * dp - 2 * w.cross(integral_moved);
   x1.p_w_b = x0.p_w_b + moved;
-  x1.v_w_b = x0.v_w_b + T * earth.g_w + x0.q_w_b * dv - 2 * w.cross(moved);
+  x1.v_w_b = x0.v_w_b + fall.v + x0.q_w_b * dv - 2 * w.cross(moved);
   x1.q_w_b = (so3::exp(-w * T) * x0.q_w_b * z.dq).normalized();
   x1.bias = x0.bias;
   return x1;

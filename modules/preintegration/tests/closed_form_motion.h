@@ -8,9 +8,9 @@
 #include "foucault/core/so3.h"
 #include "foucault/preintegration/motion.h"
 
-/// Motion over a rotating Earth with gravity constant in w, in closed form: position by sines,
-/// attitude by a cone about the vertical. Specific force and angular rate are exact, increments
-/// come from 5-point Gauss-Legendre quadrature: truth for the refined model.
+/// Motion over a rotating Earth with the gravity of an EarthModel, in closed form: position by
+/// sines, attitude by a cone about the vertical. Specific force and angular rate are exact,
+/// increments come from 5-point Gauss-Legendre quadrature.
 namespace foucault::testing {
 
 class ClosedFormMotion {
@@ -50,7 +50,7 @@ class ClosedFormMotion {
     return rate(t) + q(t).conjugate() * earth_.omega_ie_w;
   }
   Eigen::Vector3d specific_force_b(double t) const {
-    return q(t).conjugate() * (a(t) - earth_.g_w + 2 * earth_.omega_ie_w.cross(v(t)));
+    return q(t).conjugate() * (a(t) - earth_.gravity(p(t)) + 2 * earth_.omega_ie_w.cross(v(t)));
   }
 
   NodeState state(double t) const {
@@ -108,7 +108,8 @@ inline Preintegration preintegrate(const std::vector<ImuIncrement>& increments,
 
 inline EarthModel wuhan_earth() {
   return earth_model(PreintegrationModel::refined,
-                     LocalFrame(Geodetic{30.45 * M_PI / 180, 114.47 * M_PI / 180, 20}));
+                     LocalFrame(Geodetic{30.45 * M_PI / 180, 114.47 * M_PI / 180, 20}),
+                     Eigen::Vector3d::Zero());
 }
 
 }  // namespace foucault::testing

@@ -54,6 +54,27 @@ TEST(Motion, WithoutTheEarthTheSameTestFails) {
   EXPECT_GT(error.segment<3>(kPosition).norm(), 1e-4);
 }
 
+/// Gravity that changes ten thousand times faster with the place than the real one.
+EarthModel steep_earth() {
+  EarthModel earth = wuhan_earth();
+  earth.gravity_gradient = (1.5e-2 * Vector3d(-1, -1, 2)).asDiagonal();
+  earth.gravity_gradient(0, 2) = earth.gravity_gradient(2, 0) = 3e-3;
+  earth.p_ref = {3, -2, 1};
+  return earth;
+}
+
+TEST(Motion, LandsOnExactTruthWhereGravityChangesWithThePlace) {
+  const ClosedFormMotion motion(steep_earth());
+  const Vector15d error = prediction_error(motion, steep_earth(), 2, 2.2, 200);
+  // Left out: gravity along the way beyond its first derivative, G a T^3 / 6 = 5e-5 m/s.
+  EXPECT_LT(error.segment<3>(kVelocity).norm(), 1e-4);
+  EarthModel constant = steep_earth();
+  constant.g_w = steep_earth().gravity(motion.p(2));
+  constant.gravity_gradient.setZero();
+  const Vector15d without = prediction_error(motion, constant, 2, 2.2, 200);
+  EXPECT_GT(without.segment<3>(kVelocity).norm(), 1e-3);  // G v T^2 / 2
+}
+
 TEST(Motion, RestOnTheEarthStaysAtRest) {
   const EarthModel earth = wuhan_earth();
   const ClosedFormMotion rest(earth, 0);
@@ -147,7 +168,7 @@ Matrix15d numerical_jacobian(const NodeState& x0, const NodeState& x1, const Pre
 
 TEST(Motion, JacobiansAreDerivatives) {
   // An Earth that turns a thousand times faster, so that its terms do not hide in rounding.
-  EarthModel earth = wuhan_earth();
+  EarthModel earth = steep_earth();
   earth.omega_ie_w *= 1000;
   const ClosedFormMotion motion(earth);
   const Preintegration pre = preintegrate(motion.increments(2, 3, 100));

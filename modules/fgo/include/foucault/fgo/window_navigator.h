@@ -78,7 +78,7 @@ class WindowNavigator final : public Navigator {
   std::unique_ptr<ceres::LossFunction> loss_;
 
   std::optional<LocalFrame> frame_;
-  EarthModel earth_;
+  EarthModel earth_;  ///< of the interval from the newest node on
   std::deque<Node> nodes_;
   std::deque<Interval> intervals_;  ///< one less than nodes
   std::unique_ptr<PriorFactor> prior_;

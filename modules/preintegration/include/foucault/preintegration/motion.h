@@ -30,6 +30,7 @@ Vector15d boxminus(const NodeState& y, const NodeState& x);
 ///   r_v = R0^T (v1 - v0 - g T + 2 w x (p1 - p0))    - (dv - a x (T dv - dp))            (25)
 ///   r_q = log(dq^-1 (exp(-w T) q0)^-1 q1)                                              (22)
 ///   c   = v0 T^2/2 + g T^3/6 + R0 idp, the integral of p(t) - p0                       (29)
+/// and, where gravity has a gradient G, g at p0 and G v0 T^2/2, G v0 T^3/6 added to what it does.
 /// All rows are true minus measured, as the errors of the preintegration are: (49) as printed has
 /// the opposite sign in its attitude row, which would turn its correlations with the others.
 /// The Jacobians are exact derivatives of these expressions.
