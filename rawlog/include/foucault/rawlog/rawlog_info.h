@@ -26,7 +26,7 @@ struct StreamInfo {
   int64_t count = 0;
   int64_t first_ns = 0;
   int64_t last_ns = 0;
-  double median_interval = 0;  ///< [s], 0 with fewer than two; to 1 % where there are many
+  double median_interval = 0;  ///< [s], 0 with fewer than two; to 0.1 %
   int64_t duplicates = 0;      ///< stamps equal to the one before
   int64_t backward = 0;        ///< stamps before the one before
   int64_t without_stamp = 0;

@@ -1,0 +1,250 @@
+#include "foucault/rawlog/rawlog_info.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "foucault/core/error.h"
+#include "mrpt_convert.h"
+#include "rawlog_stream.h"
+
+namespace foucault {
+
+using rawlog::LoggedObservation;
+
+namespace {
+
+constexpr size_t kListedGaps = 20;
+
+/// Distribution of intervals, to 0.1 %: bins of equal ratio that know the mean of what fell in.
+class Intervals {
+ public:
+  void add(double seconds) {
+    Bin& bin = bins_[static_cast<int>(std::floor(std::log(seconds) * kBinsPerLog))];
+    ++bin.count;
+    bin.sum += seconds;
+    ++count_;
+  }
+
+  double median() const {
+    int64_t below = 0;
+    for (const auto& [index, bin] : bins_) {
+      below += bin.count;
+      if (2 * below >= count_) return bin.sum / static_cast<double>(bin.count);
+    }
+    return 0;
+  }
+
+  int64_t longer_than(double seconds) const {
+    int64_t count = 0;
+    for (const auto& [index, bin] : bins_) {
+      if (bin.sum > seconds * static_cast<double>(bin.count)) count += bin.count;
+    }
+    return count;
+  }
+
+ private:
+  static constexpr double kBinsPerLog = 1000;
+  struct Bin {
+    int64_t count = 0;
+    double sum = 0;
+  };
+  std::map<int, Bin> bins_;
+  int64_t count_ = 0;
+};
+
+/// The longest intervals seen.
+class LongestIntervals {
+ public:
+  void add(const Gap& gap) {
+    if (gaps_.size() == kListedGaps && gap.length <= gaps_.back().length) return;
+    const auto longer = [](const Gap& a, const Gap& b) { return a.length > b.length; };
+    gaps_.insert(std::upper_bound(gaps_.begin(), gaps_.end(), gap, longer), gap);
+    if (gaps_.size() > kListedGaps) gaps_.pop_back();
+  }
+
+  std::vector<Gap> in_time_order(double longer_than) const {
+    std::vector<Gap> gaps;
+    std::copy_if(gaps_.begin(), gaps_.end(), std::back_inserter(gaps),
+                 [&](const Gap& gap) { return gap.length > longer_than; });
+    std::sort(gaps.begin(), gaps.end(), [](const Gap& a, const Gap& b) { return a.t_ns < b.t_ns; });
+    return gaps;
+  }
+
+ private:
+  std::vector<Gap> gaps_;  // longest first
+};
+
+/// Collects a StreamInfo.
+class StreamStatistics {
+ public:
+  StreamStatistics(std::string label, std::string type) {
+    info_.label = std::move(label);
+    info_.type = std::move(type);
+  }
+
+  void add(const std::optional<int64_t>& t_ns) {
+    ++info_.count;
+    if (!t_ns) {
+      ++info_.without_stamp;
+      return;
+    }
+    if (last_ns_) {
+      add_interval(*last_ns_, *t_ns);
+      info_.first_ns = std::min(info_.first_ns, *t_ns);
+      info_.last_ns = std::max(info_.last_ns, *t_ns);
+    } else {
+      info_.first_ns = *t_ns;
+      info_.last_ns = *t_ns;
+    }
+    last_ns_ = t_ns;
+  }
+
+  StreamInfo result() const {
+    constexpr double kGapIntervals = 1.5;
+    StreamInfo info = info_;
+    info.median_interval = intervals_.median();
+    info.gap_count = intervals_.longer_than(kGapIntervals * info.median_interval);
+    info.longest_gaps = longest_.in_time_order(kGapIntervals * info.median_interval);
+    return info;
+  }
+
+ private:
+  void add_interval(int64_t before_ns, int64_t now_ns) {
+    if (now_ns == before_ns) {
+      ++info_.duplicates;
+    } else if (now_ns < before_ns) {
+      ++info_.backward;
+    } else {
+      const double seconds = static_cast<double>(now_ns - before_ns) * 1e-9;
+      intervals_.add(seconds);
+      longest_.add({before_ns, seconds});
+    }
+  }
+
+  StreamInfo info_;
+  Intervals intervals_;
+  LongestIntervals longest_;
+  std::optional<int64_t> last_ns_;
+};
+
+void add_sigma(const Eigen::Vector3d& sigma, bool first, GnssInfo& info) {
+  info.min_sigma = first ? sigma : Eigen::Vector3d(info.min_sigma.cwiseMin(sigma));
+  info.max_sigma = first ? sigma : Eigen::Vector3d(info.max_sigma.cwiseMax(sigma));
+}
+
+/// Builds a RawlogInfo, observation by observation.
+class Collector {
+ public:
+  explicit Collector(RawlogInfo& info) : info_(info) {}
+
+  void add(const LoggedObservation& logged) {
+    const mrpt::obs::CObservation& observation = *logged.observation;
+    const std::optional<int64_t> t_ns = rawlog::from_mrpt(observation.timestamp);
+    info_.sensory_frames = info_.sensory_frames || logged.in_frame;
+    statistics(observation).add(t_ns);
+    if (const auto* imu = dynamic_cast<const mrpt::obs::CObservationIMU*>(&observation)) {
+      add_imu(*imu);
+    } else if (const auto* gps = dynamic_cast<const mrpt::obs::CObservationGPS*>(&observation)) {
+      add_gps(*gps);
+    }
+  }
+
+  void finish() {
+    for (const auto& [key, statistics] : streams_) info_.streams.push_back(statistics.result());
+    for (auto& [label, receiver] : receivers_) {
+      if (imu_pose_ && receiver.antenna) set_lever_arm(*receiver.antenna, receiver.info);
+      info_.receivers.push_back(receiver.info);
+    }
+  }
+
+ private:
+  struct Receiver {
+    GnssInfo info;
+    std::optional<rawlog::SensorPose> antenna;
+    bool has_sigma = false;
+  };
+
+  StreamStatistics& statistics(const mrpt::obs::CObservation& observation) {
+    const std::string type = rawlog::class_name(observation);
+    const auto key = std::make_pair(observation.sensorLabel, type);
+    return streams_.try_emplace(key, observation.sensorLabel, type).first->second;
+  }
+
+  void add_imu(const mrpt::obs::CObservationIMU& imu) {
+    const std::optional<ImuSample> sample = rawlog::decode_imu(imu, 0);
+    if (!sample) return;
+    if (!imu_pose_) {
+      imu_pose_ = rawlog::from_mrpt(imu.sensorPose);
+      info_.imu_label = imu.sensorLabel;
+      info_.mounting = Mounting{imu_pose_->q_v_s};
+    }
+    if (!sample->gyro_b.allFinite() || !sample->accel_b.allFinite()) ++info_.imu_not_finite;
+  }
+
+  void add_gps(const mrpt::obs::CObservationGPS& gps) {
+    if (rawlog::decode_reference(gps, 0)) return;
+    Receiver& receiver = receivers_[gps.sensorLabel];
+    receiver.info.label = gps.sensorLabel;
+    const std::optional<GnssFix> fix = rawlog::decode_fix(gps, 0, true);
+    if (!fix) {
+      ++receiver.info.without_position;
+      return;
+    }
+    add_fix(*fix, receiver);
+    if (!receiver.antenna) receiver.antenna = rawlog::from_mrpt(gps.sensorPose);
+  }
+
+  static void add_fix(const GnssFix& fix, Receiver& receiver) {
+    GnssInfo& info = receiver.info;
+    if (info.qualities.empty()) info.first = fix.antenna;
+    info.last = fix.antenna;
+    ++info.qualities[fix.quality];
+    if (fix.velocity_n) ++info.with_velocity;
+    const Eigen::Vector3d variance = fix.position_covariance.diagonal();
+    if (!variance.allFinite() || variance.minCoeff() <= 0) {
+      ++info.bad_sigma;
+      return;
+    }
+    add_sigma(variance.cwiseSqrt(), !std::exchange(receiver.has_sigma, true), info);
+  }
+
+  void set_lever_arm(const rawlog::SensorPose& antenna, GnssInfo& receiver) const {
+    receiver.p_v = antenna.p_v_s - imu_pose_->p_v_s;
+    receiver.p_b_a = imu_pose_->q_v_s.conjugate() * *receiver.p_v;
+  }
+
+  RawlogInfo& info_;
+  std::map<std::pair<std::string, std::string>, StreamStatistics> streams_;
+  std::map<std::string, Receiver> receivers_;
+  std::optional<rawlog::SensorPose> imu_pose_;
+};
+
+}  // namespace
+
+RawlogInfo read_rawlog_info(const std::string& path, const std::function<void(double)>& progress) {
+  constexpr int64_t kObservationsPerReport = 2000;
+  RawlogInfo info;
+  rawlog::RawlogStream stream(path);
+  Collector collector(info);
+  int64_t observations = 0;
+  try {
+    while (const std::optional<LoggedObservation> logged = stream.next()) {
+      collector.add(*logged);
+      if (progress && ++observations % kObservationsPerReport == 0) progress(stream.progress());
+    }
+  } catch (const DataError& error) {
+    if (stream.records() == 0) throw;
+    info.damage = error.what();
+  }
+  collector.finish();
+  info.path = path;
+  info.file_bytes = static_cast<int64_t>(stream.file_size());
+  info.compressed = stream.compressed();
+  info.records = stream.records();
+  info.other_records = stream.other_records();
+  if (progress) progress(1);
+  return info;
+}
+
+}  // namespace foucault
