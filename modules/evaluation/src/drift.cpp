@@ -77,10 +77,9 @@ void DriftCollector::add(const Outage& outage, int64_t t_ns, const Eigen::Vector
 }
 
 std::vector<OutageDrift> DriftCollector::complete(int64_t until_ns) const {
-  constexpr int64_t kSameNs = 5'000'000;
   std::vector<OutageDrift> drifts;
   for (const auto& [index, samples] : outages_) {
-    if (samples.outage.end_ns > until_ns + kSameNs) continue;
+    if (samples.outage.end_ns > until_ns + kStampToleranceNs) continue;
     if (!sampled_to_the_end(samples.outage, samples.samples)) continue;
     drifts.push_back(outage_drift(samples.outage, samples.samples, marks_s_));
   }
@@ -98,7 +97,7 @@ void WithheldTruth::epoch(const Epoch& epoch) {
   if (waiting_.empty() || waiting_.front().fix.t_ns != epoch.t_ns) return;
   const Truth& truth = waiting_.front();
   const Geodetic antenna = antenna_position(epoch, truth.fix.p_b_a);
-  callback_(truth.outage, epoch.t_ns, ned_offset(truth.fix.antenna, antenna));
+  callback_(truth.outage, epoch, ned_offset(truth.fix.antenna, antenna));
   waiting_.pop_front();
 }
 

@@ -5,19 +5,10 @@
 #include <algorithm>
 
 #include "foucault/core/time.h"
+#include "foucault/evaluation/csv_line.h"
 
 namespace foucault {
 namespace {
-
-std::string csv_cell(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) {
-    quoted += c;
-    if (c == '"') quoted += c;
-  }
-  return quoted + "\"";
-}
 
 std::string markdown_row(const std::vector<std::string>& cells) {
   std::string row = "|";
@@ -62,24 +53,50 @@ std::vector<std::string> statistics_cells(const std::vector<double>& values) {
   return cells;
 }
 
+/// Difference, percentage and its interval, a column an IMU.
+std::vector<std::vector<std::string>> difference_rows(const std::vector<MethodDrifts>& drifts,
+                                                      const std::vector<std::string>& imus,
+                                                      const std::string& base,
+                                                      const std::string& other) {
+  const std::string name = fmt::format("{} - {}", other, base);
+  std::vector<std::vector<std::string>> rows{
+      {name + " (m)"}, {name + " (%)"}, {"95 % interval (%)"}};
+  for (const std::string& imu : imus) {
+    const MethodDrifts* a = find(drifts, imu, base);
+    const MethodDrifts* b = find(drifts, imu, other);
+    if (!a || !b) {
+      for (std::vector<std::string>& row : rows) row.push_back("-");
+      continue;
+    }
+    const PairedComparison c = compare_paired(a->horizontal_max, b->horizontal_max);
+    rows[0].push_back(fmt::format("{:.2f}", c.rms_difference.value));
+    rows[1].push_back(fmt::format("{:.2f}", 100 * c.relative.value));
+    rows[2].push_back(fmt::format("[{:.2f}, {:.2f}]", 100 * c.relative.low, 100 * c.relative.high));
+  }
+  return rows;
+}
+
 void append(std::vector<std::string>& row, const DriftValue& value) {
   row.push_back(fmt::format("{:.4f}", value.horizontal));
   row.push_back(fmt::format("{:.4f}", value.vertical));
 }
 
 /// Seconds in full, without the rounding of a double.
-std::string unix_seconds(int64_t t_ns) {
+std::string seconds_text(int64_t t_ns) {
   return fmt::format("{}.{:09}", t_ns / kNanosecondsPerSecond, t_ns % kNanosecondsPerSecond);
 }
 
 std::vector<std::string> record_cells(const DriftRecord& record) {
   const Outage& outage = record.drift.outage;
+  const GpsTime gps = unix_to_gps(outage.begin_ns);
   std::vector<std::string> row{record.recording,
                                record.imu,
                                record.method,
                                fmt::format("{}", record.shift_s),
                                fmt::format("{}", outage.index + 1),
-                               unix_seconds(outage.begin_ns),
+                               seconds_text(outage.begin_ns),
+                               fmt::format("{}", gps.week),
+                               seconds_text(gps.tow_ns),
                                fmt::format("{}", seconds_between(outage.begin_ns, outage.end_ns))};
   append(row, record.drift.maximum);
   append(row, record.drift.end);
@@ -96,13 +113,8 @@ std::vector<std::string> record_cells(const DriftRecord& record) {
 }  // namespace
 
 std::string to_csv(const TextTable& table) {
-  const auto line = [](const std::vector<std::string>& cells) {
-    std::string text;
-    for (const std::string& cell : cells) text += (&cell == &cells[0] ? "" : ",") + csv_cell(cell);
-    return text + "\n";
-  };
-  std::string csv = line(table.header);
-  for (const std::vector<std::string>& row : table.rows) csv += line(row);
+  std::string csv = csv_line(table.header) + "\n";
+  for (const std::vector<std::string>& row : table.rows) csv += csv_line(row) + "\n";
   return csv;
 }
 
@@ -116,9 +128,28 @@ std::string to_markdown(const TextTable& table) {
   return text;
 }
 
-TextTable drift_rms_table(const std::vector<MethodDrifts>& drifts) {
+std::string to_plain_text(const TextTable& table) {
+  std::vector<std::size_t> widths(table.header.size());
+  const auto widen = [&](const std::vector<std::string>& cells) {
+    for (std::size_t i = 0; i < cells.size(); ++i) widths[i] = std::max(widths[i], cells[i].size());
+  };
+  widen(table.header);
+  for (const std::vector<std::string>& row : table.rows) widen(row);
+  std::string text = table.title.empty() ? std::string() : table.title + "\n";
+  const auto add = [&](const std::vector<std::string>& cells) {
+    text += fmt::format("{:<{}}", cells[0], widths[0]);
+    for (std::size_t i = 1; i < cells.size(); ++i)
+      text += fmt::format("  {:>{}}", cells[i], widths[i]);
+    text += "\n";
+  };
+  add(table.header);
+  for (const std::vector<std::string>& row : table.rows) add(row);
+  return text;
+}
+
+TextTable drift_rms_table(const std::vector<MethodDrifts>& drifts, const std::string& imu_header) {
   const std::vector<std::string> methods = distinct(drifts, &MethodDrifts::method);
-  TextTable table{"RMSEs of horizontal and vertical drifts in meters", {"IMU"}, {}};
+  TextTable table{"RMSEs of horizontal and vertical drifts in meters", {imu_header}, {}};
   for (const std::string& method : methods) {
     table.header.push_back(method + " Hor");
     table.header.push_back(method + " Ver");
@@ -135,30 +166,24 @@ TextTable drift_rms_table(const std::vector<MethodDrifts>& drifts) {
   return table;
 }
 
-TextTable drift_difference_table(const std::vector<MethodDrifts>& drifts, const std::string& base,
-                                 const std::string& other) {
-  TextTable table{fmt::format("Horizontal-drift differences between {} and {}", base, other),
-                  {"IMU"},
-                  {{"Difference (m)"}, {"Percentage (%)"}, {"95 % interval (%)"}}};
-  for (const std::string& imu : distinct(drifts, &MethodDrifts::imu)) {
-    const MethodDrifts* a = find(drifts, imu, base);
-    const MethodDrifts* b = find(drifts, imu, other);
-    if (!a || !b) continue;
-    const PairedComparison c = compare_paired(a->horizontal_max, b->horizontal_max);
-    table.header.push_back(imu);
-    table.rows[0].push_back(fmt::format("{:.2f}", c.rms_difference.value));
-    table.rows[1].push_back(fmt::format("{:.2f}", 100 * c.relative.value));
-    table.rows[2].push_back(
-        fmt::format("[{:.2f}, {:.2f}]", 100 * c.relative.low, 100 * c.relative.high));
+TextTable drift_difference_table(const std::vector<MethodDrifts>& drifts, const std::string& base) {
+  TextTable table{fmt::format("Horizontal-drift differences from {}", base), {"Difference"}, {}};
+  const std::vector<std::string> imus = distinct(drifts, &MethodDrifts::imu);
+  table.header.insert(table.header.end(), imus.begin(), imus.end());
+  for (const std::string& other : distinct(drifts, &MethodDrifts::method)) {
+    if (other == base) continue;
+    const std::vector<std::vector<std::string>> rows = difference_rows(drifts, imus, base, other);
+    table.rows.insert(table.rows.end(), rows.begin(), rows.end());
   }
   return table;
 }
 
-TextTable drift_statistics_table(const std::vector<MethodDrifts>& drifts) {
-  TextTable table{
-      "Per-outage maximum drift in meters, with 95 % bootstrap intervals",
-      {"IMU", "Method", "Direction", "Outages", "RMS", "Mean", "Median", "68 %", "95 %", "Maximum"},
-      {}};
+TextTable drift_statistics_table(const std::vector<MethodDrifts>& drifts,
+                                 const std::string& imu_header) {
+  TextTable table{"Per-outage maximum drift in meters, with 95 % bootstrap intervals",
+                  {imu_header, "Method", "Direction", "Outages", "RMS", "Mean", "Median", "68 %",
+                   "95 %", "Maximum"},
+                  {}};
   for (const MethodDrifts& d : drifts) {
     if (d.horizontal_max.empty()) continue;
     for (const bool horizontal : {true, false}) {
@@ -176,10 +201,13 @@ TextTable drift_statistics_table(const std::vector<MethodDrifts>& drifts) {
 TextTable drift_record_table(const std::vector<DriftRecord>& records,
                              const std::vector<double>& marks_s) {
   TextTable table;
-  table.header = {
-      "recording",     "imu",      "method",           "shift_s",        "outage",
-      "begin_unix_s",  "length_s", "max_horizontal_m", "max_vertical_m", "end_horizontal_m",
-      "end_vertical_m"};
+  table.header = {"recording",      "imu",
+                  "method",         "shift_s",
+                  "outage",         "begin_unix_s",
+                  "begin_gps_week", "begin_gps_s",
+                  "length_s",       "max_horizontal_m",
+                  "max_vertical_m", "end_horizontal_m",
+                  "end_vertical_m"};
   for (const double mark_s : marks_s) {
     table.header.push_back(fmt::format("horizontal_{}s_m", mark_s));
     table.header.push_back(fmt::format("vertical_{}s_m", mark_s));

@@ -7,12 +7,6 @@
 #include "foucault/core/time.h"
 
 namespace foucault {
-namespace {
-
-constexpr int64_t kStampToleranceNs = 5'000'000;
-
-}  // namespace
-
 void OutageOptions::fields(ConfigFields& f) {
   f.number("first_s", first_s, kNotNegative, "start of the first outage, after the first fix");
   f.number("length_s", length_s, kPositive, "length of an outage");
@@ -55,6 +49,11 @@ std::optional<Outage> OutageSchedule::at(int64_t first_fix_ns, int64_t t_ns) con
   if (since > start + length_ns_) return std::nullopt;
   const int64_t begin_ns = first_fix_ns + start;
   return Outage{index, begin_ns, begin_ns + length_ns_};
+}
+
+std::optional<double> OutageSchedule::first_end_s() const {
+  if (starts_ns_.empty()) return std::nullopt;
+  return to_seconds(starts_ns_.front() + length_ns_);
 }
 
 OutageSource::OutageSource(std::unique_ptr<Source> source, OutageSchedule schedule,

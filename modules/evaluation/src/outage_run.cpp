@@ -1,6 +1,8 @@
 #include "foucault/evaluation/outage_run.h"
 
+#include <algorithm>
 #include <ctime>
+#include <map>
 #include <utility>
 
 namespace foucault {
@@ -20,12 +22,11 @@ class DriftMeter : public Sink {
       : observer_(observer),
         by_reference_(options.marks_s),
         by_fixes_(options.marks_s),
-        withheld_([this](const Outage& outage, int64_t t_ns, const Eigen::Vector3d& error_n) {
-          by_fixes_.add(outage, t_ns, error_n);
+        withheld_([this](const Outage& outage, const Epoch& epoch, const Eigen::Vector3d& error_n) {
+          withheld_error(outage, epoch, error_n);
         }),
-        source_(
-            std::move(source), schedule,
-            [this](const Outage& outage, const GnssFix& fix) { withheld_.withheld(outage, fix); }),
+        source_(std::move(source), schedule,
+                [this](const Outage& outage, const GnssFix& fix) { withheld(outage, fix); }),
         comparison_(
             source_.mounting(),
             [this](const Epoch& epoch, const ReferenceError& error) {
@@ -50,24 +51,41 @@ class DriftMeter : public Sink {
   }
 
   OutageRunResult result() const {
-    const int64_t until_ns = source_.last_fix_ns().value_or(0);
-    const std::vector<OutageDrift> by_reference = by_reference_.complete(until_ns);
-    const std::vector<OutageDrift> by_fixes = by_fixes_.complete(until_ns);
-    const bool use_reference = !by_reference.empty() && by_reference.size() >= by_fixes.size();
     OutageRunResult result;
+    result.first_fix_ns = source_.first_fix_ns().value_or(0);
+    result.last_fix_ns = source_.last_fix_ns().value_or(0);
+    result.scheduled = scheduled_until(result.last_fix_ns);
+    const std::vector<OutageDrift> by_reference = by_reference_.complete(result.last_fix_ns);
+    const std::vector<OutageDrift> by_fixes = by_fixes_.complete(result.last_fix_ns);
+    const bool use_reference = !by_reference.empty() && by_reference.size() >= by_fixes.size();
     result.truth = use_reference ? DriftTruth::reference : DriftTruth::withheld_fixes;
     result.drifts = use_reference ? by_reference : by_fixes;
     return result;
   }
 
  private:
+  void withheld(const Outage& outage, const GnssFix& fix) {
+    ends_ns_[outage.index] = outage.end_ns;
+    withheld_.withheld(outage, fix);
+  }
+  void withheld_error(const Outage& outage, const Epoch& epoch, const Eigen::Vector3d& error_n) {
+    if (observer_) observer_->withheld_error(outage, epoch, error_n);
+    by_fixes_.add(outage, epoch.t_ns, error_n);
+  }
   void reference_error(const Epoch& epoch, const ReferenceError& error) {
     if (observer_) observer_->reference_error(epoch, error);
     const std::optional<Outage> outage = source_.outage_at(epoch.t_ns);
     if (outage) by_reference_.add(*outage, epoch.t_ns, error.position_n);
   }
 
+  int64_t scheduled_until(int64_t until_ns) const {
+    return std::count_if(ends_ns_.begin(), ends_ns_.end(), [&](const auto& index_and_end) {
+      return index_and_end.second <= until_ns + kStampToleranceNs;
+    });
+  }
+
   OutageRunObserver* observer_;
+  std::map<int64_t, int64_t> ends_ns_;  ///< by index, of outages that withheld a fix
   DriftCollector by_reference_;
   DriftCollector by_fixes_;
   WithheldTruth withheld_;

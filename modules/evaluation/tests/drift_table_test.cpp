@@ -25,11 +25,18 @@ TEST(DriftTable, RmsHasTheFormOfTableThree) {
 }
 
 TEST(DriftTable, DifferencesHaveTheFormOfTableFour) {
-  EXPECT_EQ(to_csv(drift_difference_table(some_drifts(), "ekf", "rough")),
-            "IMU,ADIS16465\n"
-            "Difference (m),3.54\n"
-            "Percentage (%),100.00\n"
-            "95 % interval (%),\"[100.00, 100.00]\"\n");
+  EXPECT_EQ(to_csv(drift_difference_table(some_drifts(), "ekf")),
+            "Difference,ADIS16465,ICM20602\n"
+            "rough - ekf (m),3.54,-\n"
+            "rough - ekf (%),100.00,-\n"
+            "95 % interval (%),\"[100.00, 100.00]\",-\n");
+}
+
+TEST(DriftTable, PlainTextIsInLine) {
+  EXPECT_EQ(to_plain_text({"Title", {"IMU", "a", "long"}, {{"ADIS", "1.25", "-"}}}),
+            "Title\n"
+            "IMU      a  long\n"
+            "ADIS  1.25     -\n");
 }
 
 TEST(DriftTable, StatisticsHaveARowADirection) {
@@ -51,10 +58,13 @@ TEST(DriftTable, OneRowAnOutage) {
   const Outage outage{1, 1'646'881'782'300'000'000, 1'646'881'842'300'000'000};
   record.drift = outage_drift(outage, {{10, {3, 4, -1}}, {60, {6, 8, 2}}}, {10, 20});
   EXPECT_EQ(to_csv(drift_record_table({record}, {10, 20})),
-            "recording,imu,method,shift_s,outage,begin_unix_s,length_s,max_horizontal_m,"
+            "recording,imu,method,shift_s,outage,begin_unix_s,begin_gps_week,begin_gps_s,length_s,"
+            "max_horizontal_m,"
             "max_vertical_m,end_horizontal_m,end_vertical_m,horizontal_10s_m,vertical_10s_m,"
             "horizontal_20s_m,vertical_20s_m\n"
-            "\"trip, first.rawlog\",ADIS16465,ekf,75,2,1646881782.300000000,60,10.0000,2.0000,"
+            "\"trip, "
+            "first.rawlog\",ADIS16465,ekf,75,2,1646881782.300000000,2200,357000.300000000,60,10."
+            "0000,2.0000,"
             "10.0000,2.0000,5.0000,1.0000,,\n");
 }
 

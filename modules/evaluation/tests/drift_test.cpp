@@ -89,9 +89,9 @@ TEST(AntennaPosition, AddsTheLeverArm) {
 
 TEST(WithheldTruth, ComparesAtTheAntenna) {
   std::vector<Eigen::Vector3d> errors;
-  WithheldTruth truth([&](const Outage& outage, int64_t t_ns, const Eigen::Vector3d& error_n) {
+  WithheldTruth truth([&](const Outage& outage, const Epoch& at, const Eigen::Vector3d& error_n) {
     EXPECT_EQ(outage.index, kOutage.index);
-    EXPECT_EQ(t_ns, after_begin(2));
+    EXPECT_EQ(at.t_ns, after_begin(2));
     errors.push_back(error_n);
   });
   for (int t = 1; t <= 3; ++t) {

@@ -81,7 +81,7 @@ class DriftCollector {
 /// is no reference. Epochs come at any time after their fix, in order of stamps.
 class WithheldTruth {
  public:
-  using Callback = std::function<void(const Outage&, int64_t t_ns, const Eigen::Vector3d& error_n)>;
+  using Callback = std::function<void(const Outage&, const Epoch&, const Eigen::Vector3d& error_n)>;
 
   explicit WithheldTruth(Callback callback);
 

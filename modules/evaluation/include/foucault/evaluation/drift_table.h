@@ -21,6 +21,8 @@ struct TextTable {
 std::string to_csv(const TextTable& table);
 /// GitHub's Markdown, title in bold above.
 std::string to_markdown(const TextTable& table);
+/// For a terminal: columns in line, the first one to the left, the others to the right.
+std::string to_plain_text(const TextTable& table);
 
 /// All outages of one IMU by one method, over all its recordings and shifts; the same outages in
 /// the same order for every method of an IMU.
@@ -31,19 +33,21 @@ struct MethodDrifts {
   std::vector<double> vertical_max;
 };
 
-/// "RMSEs of horizontal and vertical drifts in meters": a row an IMU, two columns a method; RMS of
-/// the per-outage maximum. Rows and columns in order of appearance; "-" where nothing was run.
-TextTable drift_rms_table(const std::vector<MethodDrifts>& drifts);
+/// Table III, "RMSEs of horizontal and vertical drifts in meters": a row an IMU, two columns a
+/// method; RMS of the per-outage maximum. Rows and columns in order of appearance; "-" where
+/// nothing was run. `imu_header` heads the column of the names, which need not be IMUs.
+TextTable drift_rms_table(const std::vector<MethodDrifts>& drifts,
+                          const std::string& imu_header = "IMU");
 
-/// "Horizontal-drift differences between `base` and `other`": a column an IMU; rows difference [m],
-/// percentage (other - base) / base, and the bootstrap interval of the percentage. Only IMUs for
-/// which both were run.
-TextTable drift_difference_table(const std::vector<MethodDrifts>& drifts, const std::string& base,
-                                 const std::string& other);
+/// Table IV, "Horizontal-drift differences from `base`": a column an IMU, and for each other method
+/// the rows difference [m], percentage (other - base) / base, and the bootstrap interval of the
+/// percentage. "-" where one of both was not run.
+TextTable drift_difference_table(const std::vector<MethodDrifts>& drifts, const std::string& base);
 
 /// Statistics over outages: a row an IMU and method; RMS, mean, median, 68 %, 95 %, maximum, each
 /// with its interval.
-TextTable drift_statistics_table(const std::vector<MethodDrifts>& drifts);
+TextTable drift_statistics_table(const std::vector<MethodDrifts>& drifts,
+                                 const std::string& imu_header = "IMU");
 
 /// One outage by one method, for drift.csv.
 struct DriftRecord {
@@ -55,8 +59,9 @@ struct DriftRecord {
 };
 
 /// A row an outage and method. Columns: recording, imu, method, shift_s, outage (from 1),
-/// begin_unix_s, length_s, max_horizontal_m, max_vertical_m, end_horizontal_m, end_vertical_m, and
-/// horizontal_<mark>s_m, vertical_<mark>s_m for each mark; empty where there is no value.
+/// begin_unix_s, begin_gps_week, begin_gps_s, length_s, max_horizontal_m, max_vertical_m,
+/// end_horizontal_m, end_vertical_m, and horizontal_<mark>s_m, vertical_<mark>s_m for each mark;
+/// empty where there is no value.
 TextTable drift_record_table(const std::vector<DriftRecord>& records,
                              const std::vector<double>& marks_s);
 

@@ -33,6 +33,9 @@ struct Outage {
   int64_t end_ns = 0;
 };
 
+/// Recorded stamps are not round: one within this of an outage's border counts as on it.
+constexpr int64_t kStampToleranceNs = 5'000'000;
+
 /// When fixes are withheld.
 class OutageSchedule {
  public:
@@ -41,9 +44,11 @@ class OutageSchedule {
   /// The schedule of one of options.shifts_s. Throws UsageError if outages would overlap.
   OutageSchedule(const OutageOptions& options, double shift_s);
 
-  /// The outage at t_ns, if any. Stamps within 5 ms of a border count as on it, as recorded stamps
-  /// are not round.
+  /// The outage at t_ns, if any; borders to within kStampToleranceNs.
   std::optional<Outage> at(int64_t first_fix_ns, int64_t t_ns) const;
+
+  /// End of the first outage after the first fix [s]; none without outages.
+  std::optional<double> first_end_s() const;
 
  private:
   std::vector<int64_t> starts_ns_;  ///< since the first fix, in order
@@ -66,7 +71,8 @@ class OutageSource : public Source {
   /// The outage at a stamp that has been read; none before the first fix.
   std::optional<Outage> outage_at(int64_t t_ns) const;
 
-  /// Stamp of the last fix that has been read, withheld or not.
+  /// Stamps of the first and the last fix that have been read, withheld or not.
+  std::optional<int64_t> first_fix_ns() const { return first_fix_ns_; }
   std::optional<int64_t> last_fix_ns() const { return last_fix_ns_; }
 
  private:

@@ -17,7 +17,12 @@ enum class DriftTruth { reference, withheld_fixes };
 struct OutageRunResult {
   DriftTruth truth = DriftTruth::withheld_fixes;
   std::vector<OutageDrift> drifts;  ///< complete outages only
-  double cpu_s = 0;                 ///< of this thread, reading included
+  /// Outages of the schedule that end before the last fix and withheld at least one. The estimator
+  /// gave nothing to measure in those that are not in `drifts`.
+  int64_t scheduled = 0;
+  int64_t first_fix_ns = 0;
+  int64_t last_fix_ns = 0;
+  double cpu_s = 0;  ///< of this thread, reading included
 };
 
 struct OutageRunOptions {
@@ -33,6 +38,8 @@ using EstimatorFactory = std::function<std::unique_ptr<Estimator>(const Mounting
 class OutageRunObserver : public Sink {
  public:
   virtual void reference_error(const Epoch&, const ReferenceError&) {}
+  /// In outages: against the withheld fix of the same stamp, at the antenna, NED [m].
+  virtual void withheld_error(const Outage&, const Epoch&, const Eigen::Vector3d&) {}
   virtual void progress(double) {}
 };
 

@@ -1,0 +1,86 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "foucault/core/interfaces.h"
+#include "foucault/evaluation/drift_table.h"
+#include "foucault/evaluation/error_track.h"
+#include "foucault/evaluation/outage_run.h"
+
+/// Many recordings x methods x shifted schedules, and what comes out of comparing them.
+namespace foucault {
+
+/// Opens a recording from its beginning; called on the thread of the run.
+using SourceFactory = std::function<std::unique_ptr<Source>()>;
+
+/// One method over one recording with one schedule of outages.
+struct ExperimentRun {
+  std::string recording;
+  std::string imu;
+  std::string method;
+  double shift_s = 0;
+  OutageSchedule schedule;
+  SourceFactory open;
+  EstimatorFactory make_estimator;
+  OutageRunOptions options;
+};
+
+struct ExperimentResult {
+  std::string recording;
+  std::string imu;
+  std::string method;
+  double shift_s = 0;
+  OutageRunResult run;
+  std::vector<TrackPoint> track;  ///< errors against the truth of `run`
+  std::vector<Notice> notices;    ///< the first ones
+};
+
+/// Runs one of them. `progress` gets the part done; what it throws goes through.
+ExperimentResult run_experiment(const ExperimentRun& run,
+                                const std::function<void(double)>& progress);
+
+/// Runs all of them on `threads` threads; the results have the order of `runs` and, but for their
+/// CPU times, do not depend on the number of threads.
+/// Throws DataError for a recording without a single outage, naming what to change.
+std::vector<ExperimentResult> run_experiments(const std::vector<ExperimentRun>& runs, int threads,
+                                              const std::function<void(double)>& progress = {});
+
+/// What runs are joined by: those of one IMU, of one recording, or all.
+enum class Grouping { imu, recording, all };
+
+/// A place of a table: all outages of one method in one group.
+struct MethodOutages {
+  struct Entry {
+    const ExperimentResult* run;  ///< points into the results
+    const OutageDrift* drift;
+  };
+
+  std::string group;
+  std::string method;
+  std::vector<Entry> entries;  ///< the same outages in the same order for each method of a group
+  int64_t missing = 0;         ///< scheduled outages in which this method gave nothing to measure
+  double cpu_s = 0;            ///< of all its runs
+
+  std::vector<double> horizontal_max() const;  ///< [m]
+  std::vector<double> vertical_max() const;
+};
+
+/// Groups and methods in order of appearance, groups first. An outage that a method of the group
+/// misses is left out for all of them. The results must outlive what is returned.
+std::vector<MethodOutages> group_outages(const std::vector<ExperimentResult>& results,
+                                         Grouping grouping);
+
+/// For tables. Those without outages are left out.
+std::vector<MethodDrifts> method_drifts(const std::vector<MethodOutages>& outages);
+
+/// One record an outage and method, in the order of the results.
+std::vector<DriftRecord> drift_records(const std::vector<ExperimentResult>& results);
+
+/// The rows of Table III: by IMU if there are several, else by recording with a last row
+/// "all recordings" if there are several of these.
+std::vector<MethodOutages> table_rows(const std::vector<ExperimentResult>& results);
+
+}  // namespace foucault

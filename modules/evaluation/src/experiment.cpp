@@ -1,0 +1,219 @@
+#include "foucault/evaluation/experiment.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <tuple>
+#include <utility>
+
+#include "foucault/core/error.h"
+#include "foucault/core/time.h"
+#include "foucault/evaluation/task_pool.h"
+
+namespace foucault {
+namespace {
+
+constexpr std::size_t kMostNotices = 100;
+
+/// What of a run is wanted beside its drifts.
+class RunWatcher : public OutageRunObserver {
+ public:
+  explicit RunWatcher(const std::function<void(double)>& progress) : progress_(progress) {}
+
+  void notice(const Notice& notice) override {
+    if (notices_.size() < kMostNotices) notices_.push_back(notice);
+  }
+  void reference_error(const Epoch& epoch, const ReferenceError& error) override {
+    by_reference_.add(epoch, error.position_n);
+  }
+  void withheld_error(const Outage&, const Epoch& epoch, const Eigen::Vector3d& error_n) override {
+    by_fixes_.add(epoch, error_n);
+  }
+  void progress(double part) override {
+    if (progress_) progress_(part);
+  }
+
+  const std::vector<TrackPoint>& track(DriftTruth truth) const {
+    return (truth == DriftTruth::reference ? by_reference_ : by_fixes_).points();
+  }
+  const std::vector<Notice>& notices() const { return notices_; }
+
+ private:
+  const std::function<void(double)>& progress_;
+  ErrorTrack by_reference_;
+  ErrorTrack by_fixes_;
+  std::vector<Notice> notices_;
+};
+
+/// A recording without an outage in the earliest of its schedules has none in the others.
+std::vector<bool> earliest_of_recording(const std::vector<ExperimentRun>& runs) {
+  std::map<std::pair<std::string, std::string>, double> earliest;
+  for (const ExperimentRun& run : runs) {
+    const double end_s = run.schedule.first_end_s().value_or(0);
+    const auto [at, is_new] = earliest.try_emplace({run.imu, run.recording}, end_s);
+    if (!is_new) at->second = std::min(at->second, end_s);
+  }
+  std::vector<bool> flags;
+  for (const ExperimentRun& run : runs) {
+    const double end_s = run.schedule.first_end_s().value_or(0);
+    flags.push_back(end_s <= earliest.at({run.imu, run.recording}));
+  }
+  return flags;
+}
+
+void check_outages(const ExperimentRun& run, const OutageRunResult& result) {
+  if (result.scheduled > 0) return;
+  const double span_s = seconds_between(result.first_fix_ns, result.last_fix_ns);
+  throw DataError(fmt::format(
+      "{}: no outage fits into its {:.0f} s of fixes, the first would end after {:.0f} s; lower "
+      "outages.first_s or outages.length_s, or give outages.starts_s",
+      run.recording, span_s, run.schedule.first_end_s().value_or(0)));
+}
+
+const std::string& group_name(const ExperimentResult& result, Grouping grouping) {
+  static const std::string all = "all recordings";
+  if (grouping == Grouping::all) return all;
+  return grouping == Grouping::imu ? result.imu : result.recording;
+}
+
+/// What outages of two methods must share to be the same.
+using OutageKey = std::tuple<std::string, std::string, double, int64_t>;
+
+OutageKey key(const MethodOutages::Entry& entry) {
+  return {entry.run->imu, entry.run->recording, entry.run->shift_s, entry.drift->outage.index};
+}
+
+void append(MethodOutages& to, const ExperimentResult& result) {
+  for (const OutageDrift& drift : result.run.drifts) to.entries.push_back({&result, &drift});
+  to.missing +=
+      std::max<int64_t>(0, result.run.scheduled - static_cast<int64_t>(result.run.drifts.size()));
+  to.cpu_s += result.run.cpu_s;
+}
+
+/// Leaves the outages that all methods of each group have, in one order.
+void keep_common(std::vector<MethodOutages>& outages) {
+  std::map<std::string, std::map<OutageKey, std::size_t>> methods_with;
+  std::map<std::string, std::size_t> methods_of;
+  for (const MethodOutages& o : outages) {
+    ++methods_of[o.group];
+    for (const MethodOutages::Entry& entry : o.entries) ++methods_with[o.group][key(entry)];
+  }
+  for (MethodOutages& o : outages) {
+    const auto& counts = methods_with[o.group];
+    const auto lacking = [&](const MethodOutages::Entry& entry) {
+      return counts.at(key(entry)) != methods_of.at(o.group);
+    };
+    o.entries.erase(std::remove_if(o.entries.begin(), o.entries.end(), lacking), o.entries.end());
+    std::sort(o.entries.begin(), o.entries.end(),
+              [](const auto& a, const auto& b) { return key(a) < key(b); });
+  }
+}
+
+std::size_t count_distinct(const std::vector<ExperimentResult>& results,
+                           std::string ExperimentResult::*member) {
+  std::set<std::string> names;
+  for (const ExperimentResult& result : results) names.insert(result.*member);
+  return names.size();
+}
+
+std::vector<double> maxima(const std::vector<MethodOutages::Entry>& entries,
+                           double DriftValue::*component) {
+  std::vector<double> values;
+  for (const MethodOutages::Entry& entry : entries) {
+    values.push_back(entry.drift->maximum.*component);
+  }
+  return values;
+}
+
+}  // namespace
+
+ExperimentResult run_experiment(const ExperimentRun& run,
+                                const std::function<void(double)>& progress) {
+  RunWatcher watcher(progress);
+  ExperimentResult result{run.recording, run.imu, run.method, run.shift_s, {}, {}, {}};
+  result.run =
+      run_with_outages(run.open(), run.schedule, run.make_estimator, run.options, &watcher);
+  result.track = watcher.track(result.run.truth);
+  result.notices = watcher.notices();
+  return result;
+}
+
+std::vector<ExperimentResult> run_experiments(const std::vector<ExperimentRun>& runs, int threads,
+                                              const std::function<void(double)>& progress) {
+  const std::vector<bool> earliest = earliest_of_recording(runs);
+  std::vector<ExperimentResult> results(runs.size());
+  const auto task = [&](std::size_t i, const TaskProgress& part) {
+    results[i] = run_experiment(runs[i], part);
+    if (earliest[i]) check_outages(runs[i], results[i].run);
+  };
+  run_tasks(runs.size(), threads, task, progress);
+  return results;
+}
+
+std::vector<double> MethodOutages::horizontal_max() const {
+  return maxima(entries, &DriftValue::horizontal);
+}
+
+std::vector<double> MethodOutages::vertical_max() const {
+  return maxima(entries, &DriftValue::vertical);
+}
+
+std::vector<MethodOutages> group_outages(const std::vector<ExperimentResult>& results,
+                                         Grouping grouping) {
+  std::vector<std::string> groups;
+  std::vector<MethodOutages> outages;
+  for (const ExperimentResult& result : results) {
+    const std::string& group = group_name(result, grouping);
+    if (std::find(groups.begin(), groups.end(), group) == groups.end()) groups.push_back(group);
+    const auto found = std::find_if(outages.begin(), outages.end(), [&](const MethodOutages& o) {
+      return o.group == group && o.method == result.method;
+    });
+    if (found != outages.end()) {
+      append(*found, result);
+    } else {
+      append(outages.emplace_back(MethodOutages{group, result.method, {}, 0, 0}), result);
+    }
+  }
+  const auto place = [&](const MethodOutages& o) {
+    return std::find(groups.begin(), groups.end(), o.group) - groups.begin();
+  };
+  std::stable_sort(outages.begin(), outages.end(),
+                   [&](const auto& a, const auto& b) { return place(a) < place(b); });
+  keep_common(outages);
+  return outages;
+}
+
+std::vector<MethodDrifts> method_drifts(const std::vector<MethodOutages>& outages) {
+  std::vector<MethodDrifts> drifts;
+  for (const MethodOutages& o : outages) {
+    if (o.entries.empty()) continue;
+    drifts.push_back({o.group, o.method, o.horizontal_max(), o.vertical_max()});
+  }
+  return drifts;
+}
+
+std::vector<DriftRecord> drift_records(const std::vector<ExperimentResult>& results) {
+  std::vector<DriftRecord> records;
+  for (const ExperimentResult& r : results) {
+    for (const OutageDrift& drift : r.run.drifts) {
+      records.push_back({r.recording, r.imu, r.method, r.shift_s, drift});
+    }
+  }
+  return records;
+}
+
+std::vector<MethodOutages> table_rows(const std::vector<ExperimentResult>& results) {
+  if (count_distinct(results, &ExperimentResult::imu) > 1) {
+    return group_outages(results, Grouping::imu);
+  }
+  std::vector<MethodOutages> rows = group_outages(results, Grouping::recording);
+  if (count_distinct(results, &ExperimentResult::recording) > 1) {
+    const std::vector<MethodOutages> all = group_outages(results, Grouping::all);
+    rows.insert(rows.end(), all.begin(), all.end());
+  }
+  return rows;
+}
+
+}  // namespace foucault
