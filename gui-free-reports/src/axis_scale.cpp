@@ -7,9 +7,35 @@
 namespace foucault::reports {
 namespace {
 
-constexpr double kTypicalShare = 0.1;  // of the numbers that RangeRole::typical ignores, each side
-constexpr double kYPadding = 0.06;     // of the range, above and below
-constexpr double kBarPadding = 0.12;   // the same where numbers stand above bars
+// Shares of the numbers that range roles ignore, each side.
+constexpr double kTypicalShare = 0.1;
+constexpr double kOutlierShare = 0.005;
+constexpr double kYPadding = 0.06;    // of the range, above and below
+constexpr double kBarPadding = 0.12;  // the same where numbers stand above bars
+
+Span padded(Span span, double share, bool log) {
+  if (log) {
+    const double factor = std::pow(span.max / span.min, share);
+    return {span.min / factor, span.max * factor};
+  }
+  return {span.min - share * span.width(), span.max + share * span.width()};
+}
+
+/// The quantiles `share` and 1 - share of the finite numbers; NaN if there are none.
+Span middle_of(std::vector<double> values, double share) {
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  values.erase(
+      std::remove_if(values.begin(), values.end(), [](double v) { return !std::isfinite(v); }),
+      values.end());
+  if (values.empty()) return {kNaN, kNaN};
+  const auto skip = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size()));
+  const auto lower = values.begin() + skip;
+  std::nth_element(values.begin(), lower, values.end());
+  const double min = *lower;
+  const auto upper = values.end() - 1 - skip;
+  std::nth_element(values.begin(), upper, values.end());
+  return {min, *upper};
+}
 
 /// The finite numbers that an axis has to show.
 class Extent {
@@ -24,17 +50,18 @@ class Extent {
   void add(const std::vector<double>& values) {
     for (const double value : values) add(value);
   }
-  void add_typical(std::vector<double> values) {
-    values.erase(
-        std::remove_if(values.begin(), values.end(), [](double v) { return !std::isfinite(v); }),
-        values.end());
-    if (values.empty()) return;
-    const auto skip =
-        static_cast<std::ptrdiff_t>(kTypicalShare * static_cast<double>(values.size()));
-    std::nth_element(values.begin(), values.begin() + skip, values.end());
-    add(values[static_cast<size_t>(skip)]);
-    std::nth_element(values.begin(), values.end() - 1 - skip, values.end());
-    add(*(values.end() - 1 - skip));
+  /// What lies between the quantiles `share` and 1 - share.
+  void add_middle(std::vector<double> values, double share) {
+    const Span middle = middle_of(std::move(values), share);
+    add(middle.min);
+    add(middle.max);
+  }
+  /// What is at most half as far out again as the middle.
+  void add_but_outliers(const std::vector<double>& values) {
+    const Span middle = padded(middle_of(values, kOutlierShare), 0.25, false);
+    for (const double value : values) {
+      if (value >= middle.min && value <= middle.max) add(value);
+    }
   }
   bool empty() const { return min_ > max_; }
   Span span() const { return {min_, max_}; }
@@ -44,14 +71,6 @@ class Extent {
   double min_ = std::numeric_limits<double>::infinity();
   double max_ = -std::numeric_limits<double>::infinity();
 };
-
-Span padded(Span span, double share, bool log) {
-  if (log) {
-    const double factor = std::pow(span.max / span.min, share);
-    return {span.min / factor, span.max * factor};
-  }
-  return {span.min - share * span.width(), span.max + share * span.width()};
-}
 
 /// A range of at least the axis' least width, never empty.
 Span widened(const Axis& axis, Span span) {
@@ -95,7 +114,8 @@ Span automatic_span(const Axis& axis, const Extent& extent, double padding) {
 void add_y(const Series& series, Extent& extent) {
   for (const std::vector<double>* column : {&series.y, &series.lower, &series.upper}) {
     if (series.range_role == RangeRole::full) extent.add(*column);
-    if (series.range_role == RangeRole::typical) extent.add_typical(*column);
+    if (series.range_role == RangeRole::most) extent.add_but_outliers(*column);
+    if (series.range_role == RangeRole::typical) extent.add_middle(*column, kTypicalShare);
   }
 }
 

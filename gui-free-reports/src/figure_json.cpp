@@ -28,8 +28,10 @@ constexpr Names<Shape, 10> kShapes{{{Shape::dot, "dot"},
                                     {Shape::star, "star"},
                                     {Shape::tick, "tick"},
                                     {Shape::frame, "frame"}}};
-constexpr Names<RangeRole, 3> kRoles{
-    {{RangeRole::full, "full"}, {RangeRole::typical, "typical"}, {RangeRole::none, "none"}}};
+constexpr Names<RangeRole, 4> kRoles{{{RangeRole::full, "full"},
+                                      {RangeRole::most, "most"},
+                                      {RangeRole::typical, "typical"},
+                                      {RangeRole::none, "none"}}};
 constexpr Names<AxisKind, 4> kAxisKinds{{{AxisKind::linear, "linear"},
                                          {AxisKind::log, "log"},
                                          {AxisKind::duration, "duration"},

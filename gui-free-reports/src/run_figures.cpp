@@ -275,17 +275,27 @@ Series fix_points(const DecimatedTable::Rows& rows) {
   return series;
 }
 
+Series mark_at(double x, double y, const std::string& label, Shape shape, double size) {
+  Series mark = points(label, Ink::black, size, {x}, {y});
+  mark.shape = shape;
+  mark.in_legend = false;
+  return mark;
+}
+
+/// Marks where the track starts and ends; one label if that is the same place.
 void mark_ends(const Series& track, Panel& panel) {
   if (track.x.empty()) return;
-  const Annotation start{track.x.front(), track.y.front(), "start", Side::left, Ink::black};
+  Annotation start{track.x.front(), track.y.front(), "start", Side::left, Ink::black};
   const Annotation end{track.x.back(), track.y.back(), "end", Side::right, Ink::black};
-  panel.series.push_back(points("start", Ink::black, 7, {start.x}, {start.y}));
-  panel.series.back().shape = Shape::ring;
-  panel.series.back().in_legend = false;
-  panel.series.push_back(points("end", Ink::black, 6.5, {end.x}, {end.y}));
-  panel.series.back().shape = Shape::square;
-  panel.series.back().in_legend = false;
-  panel.annotations = {start, end};
+  panel.series.push_back(mark_at(start.x, start.y, "start", Shape::ring, 7));
+  panel.series.push_back(mark_at(end.x, end.y, "end", Shape::square, 6));
+  const double size = std::max(x_span(panel).width(), y_span(panel).width());
+  if (std::hypot(end.x - start.x, end.y - start.y) < 0.04 * size) {
+    start.text = "start, end";
+    panel.annotations = {start};
+  } else {
+    panel.annotations = {start, end};
+  }
 }
 
 /// A page height that suits the shape of the track [mm].
@@ -468,6 +478,7 @@ Panel innovation_panel(const RunData& data, const DecimatedTable::Rows& used,
   panel.series.push_back(innovation_bounds(used, axis, column));
   panel.series.push_back(points("used", Ink::blue, 2.4, used.x, used.columns[axis]));
   panel.series.back().column = column;
+  panel.series.back().range_role = RangeRole::most;
   if (rejected.x.empty()) return panel;
   panel.series.push_back(
       points("rejected", Ink::vermillion, 5, rejected.x, rejected.columns[axis]));
@@ -485,7 +496,7 @@ std::optional<Figure> innovation_figure(const RunData& data, const std::string& 
   figure.caption =
       "Fix minus its prediction, before it is used, with the 3-sigma bounds of the prediction and "
       "the fix together. Good innovations are centred, have no pattern in time and stay within the "
-      "bounds. Crosses are rejected fixes; arrowheads at the edge lie outside of the figure.";
+      "bounds. Crosses are rejected fixes; arrowheads stand for what lies outside of the axes.";
   const DecimatedTable::Rows used = data.innovation.rows.rows();
   const DecimatedTable::Rows rejected = data.rejected_innovation.rows.rows();
   for (size_t axis = 0; axis < 3; ++axis) {
@@ -508,6 +519,7 @@ std::optional<Figure> postfit_figure(const RunData& data, const std::string& sub
     Panel panel = time_panel(data, value_axis(kNed[i], "m"));
     panel.y.zero_centred = true;
     panel.series.push_back(points("residual", Ink::blue, 2.4, rows.x, rows.columns[i]));
+    panel.series.back().range_role = RangeRole::most;
     panel.series.back().in_legend = false;
     figure.panels.push_back(std::move(panel));
   }

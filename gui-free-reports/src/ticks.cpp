@@ -69,9 +69,15 @@ std::string power_text(int exponent) {
   return "10" + superscript(exponent);
 }
 
-std::string log_label(double mantissa, int exponent, bool label_subdivisions) {
+/// Mantissas to label: of few decades more than the powers of ten.
+std::vector<int> log_mantissas(double decades, int count) {
+  if (count < 4 || decades >= 2.2) return {1};
+  if (decades >= 1.2) return {1, 2, 5};
+  return {1, 2, 3, 5, 7};
+}
+
+std::string log_label(int mantissa, int exponent) {
   if (mantissa == 1) return power_text(exponent);
-  if (!label_subdivisions || (mantissa != 2 && mantissa != 5)) return {};
   if (exponent < -3 || exponent > 4) return {};
   return number_text(mantissa * std::pow(10, exponent), std::max(0, -exponent));
 }
@@ -111,7 +117,7 @@ Ticks log_ticks(double min, double max, int count, const std::string& unit) {
   const double decades = std::log10(max / min);
   if (decades < 0.7) return linear_ticks(min, max, count, 1, unit);
   const int every = std::max(1, static_cast<int>(std::ceil(decades / std::max(1, count))));
-  const bool label_subdivisions = decades < 2.2 && count >= 4;
+  const std::vector<int> mantissas = log_mantissas(decades, count);
   Ticks result;
   result.unit = unit;
   const int first = static_cast<int>(std::floor(std::log10(min) + 1e-9));
@@ -121,9 +127,9 @@ Ticks log_ticks(double min, double max, int count, const std::string& unit) {
       const double at = mantissa * std::pow(10, exponent);
       if (at < min * (1 - 1e-9) || at > max * (1 + 1e-9)) continue;
       if (every > 1 && mantissa > 1) continue;
-      const bool labelled = exponent % every == 0;
-      result.ticks.push_back(
-          {at, labelled ? log_label(mantissa, exponent, label_subdivisions) : std::string()});
+      const bool labelled = exponent % every == 0 && std::find(mantissas.begin(), mantissas.end(),
+                                                               mantissa) != mantissas.end();
+      result.ticks.push_back({at, labelled ? log_label(mantissa, exponent) : std::string()});
     }
   }
   return result;

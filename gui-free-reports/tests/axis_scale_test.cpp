@@ -60,6 +60,17 @@ TEST(YSpan, LeavesOutRejectedAndUntypicalNumbers) {
   EXPECT_LE(y_span(panel).max, 2);
 }
 
+TEST(YSpan, LeavesOutFarOutliersOnly) {
+  std::vector<double> y;
+  for (int i = 0; i <= 1000; ++i) y.push_back(std::sin(i));
+  y[100] = 1.3;
+  y[500] = 40;
+  Panel panel = with_y(y);
+  panel.series.front().range_role = RangeRole::most;
+  EXPECT_GT(y_span(panel).max, 1.3);
+  EXPECT_LT(y_span(panel).max, 2);
+}
+
 TEST(YSpan, LogAxisTakesPositiveNumbersOnly) {
   Panel panel = with_y({-5, 0, 0.01, 100});
   panel.y.kind = AxisKind::log;

@@ -61,6 +61,7 @@ TEST(LogTicks, LabelDecadesWithMinorTicksBetween) {
 
 TEST(LogTicks, LabelSubdivisionsOfFewDecades) {
   EXPECT_THAT(labels(log_ticks(0.8, 22, 5)), ElementsAre("1", "2", "5", "10", "20"));
+  EXPECT_THAT(labels(log_ticks(0.009, 0.06, 5)), ElementsAre("0.01", "0.02", "0.03", "0.05"));
 }
 
 TEST(DurationTicks, ChooseAUnitThatSuitsAClock) {

@@ -15,9 +15,10 @@ enum class Mark { line, points, steps, bars, band };
 /// `frame` surrounds a cell of a heat map and has no size of its own.
 enum class Shape { dot, ring, cross, plus, triangle, square, diamond, star, tick, frame };
 
-/// What the automatic range of the y axis takes from a series: all of it, its typical part (10 %
-/// to 90 %), or nothing. Points outside the range are drawn as arrowheads on the border.
-enum class RangeRole { full, typical, none };
+/// What the automatic range of the y axis takes from a series: all of it, all but far outliers
+/// (half as much again as the range of 99 %), its typical part (10 % to 90 %), or nothing. Points
+/// outside the range are drawn as arrowheads on the border.
+enum class RangeRole { full, most, typical, none };
 
 /// One of the kinds of point within a series, e.g. a fix type.
 struct Category {
