@@ -93,10 +93,10 @@ size_t GzReadArchive::write(const void*, size_t) {
   throw std::logic_error("an archive for reading");
 }
 
-GzWriteArchive::GzWriteArchive(const std::string& path)
-    : path_(path), file_(gzopen(path.c_str(), "wb2")) {
+GzWriteArchive::GzWriteArchive(const PendingFile& file)
+    : path_(file.path()), file_(gzopen(file.temporary().c_str(), "wb2")) {
   if (!file_) {
-    throw DataError(fmt::format("'{}' cannot be written: {}", path, std::strerror(errno)));
+    throw DataError(fmt::format("'{}' cannot be written: {}", path_, std::strerror(errno)));
   }
   gzbuffer(file_.get(), kBufferSize);
   buffer_.reserve(kBufferSize);

@@ -56,11 +56,11 @@ class GzReadArchive final : public mrpt::serialization::CArchive {
   End end_ = End::none;
 };
 
-/// MRPT's archive into a gzip file.
+/// MRPT's archive into a gzip file that is still pending.
 class GzWriteArchive final : public mrpt::serialization::CArchive {
  public:
   /// Throws DataError if the file cannot be created.
-  explicit GzWriteArchive(const std::string& path);
+  explicit GzWriteArchive(const PendingFile& file);
 
   /// Throws DataError if not everything reached the disk.
   void close();

@@ -64,6 +64,7 @@ class OverviewScan {
  private:
   void look_at(const LoggedObservation& logged) {
     const std::string& label = logged.observation->sensorLabel;
+    if (!rawlog::from_mrpt(logged.observation->timestamp)) return;
     if (const auto* imu =
             dynamic_cast<const mrpt::obs::CObservationIMU*>(logged.observation.get())) {
       ++imus_;
@@ -98,12 +99,12 @@ class OverviewScan {
         options_.gnss_label.empty() ? "" : fmt::format(" labelled '{}'", options_.gnss_label);
     if (!imu_found_) {
       return fmt::format(
-          "'{}' has no IMU: {} CObservationIMU, none{} with gyroscope and "
+          "'{}' has no IMU: {} CObservationIMU, none{} with stamp, gyroscope and "
           "accelerometer; see `foucault info`",
           path_, imus_, imu_wish);
     }
     return fmt::format(
-        "'{}' has no GNSS: {} CObservationGPS, none{} with a valid position "
+        "'{}' has no GNSS: {} CObservationGPS, none{} with a stamp and a position "
         "(BESTPOS, PZS or GGA); see `foucault info`",
         path_, gps_, gnss_wish);
   }
@@ -187,7 +188,8 @@ class RawlogSource::Impl {
   void take_reference(const ReferencePose& pose, const mrpt::poses::CPose3D& sensor_pose,
                       int64_t record);
   void take_odometry(const mrpt::obs::CObservationOdometry& odometry, int64_t record, int64_t t_ns);
-  void add(const Measurement& measurement);
+  /// False if it comes too late to be put in order.
+  bool add(const Measurement& measurement);
   void skip(const LoggedObservation& logged, const std::string& reason = {});
   void skip(const std::string& name) { ++counts_.skipped[name]; }
   void check_overlap() const;
@@ -314,8 +316,7 @@ void RawlogSource::Impl::take_gps(const mrpt::obs::CObservationGPS& gps, int64_t
   if (!finite(*fix)) fail(record, t_ns, "a GNSS value is not finite; remove the record");
   fix->p_b_a = lever_arm_to(rawlog::from_mrpt(gps.sensorPose));
   fix_span_.add(t_ns);
-  ++counts_.fixes;
-  add(*fix);
+  if (add(*fix)) ++counts_.fixes;
 }
 
 void RawlogSource::Impl::take_reference(const ReferencePose& pose,
@@ -323,8 +324,9 @@ void RawlogSource::Impl::take_reference(const ReferencePose& pose,
   if (!finite(pose.position)) {
     fail(record, pose.t_ns, "the reference position is not finite; remove the record");
   }
-  ++counts_.references;
-  add(rawlog::moved_to_imu(pose, rawlog::from_mrpt(sensor_pose), overview_.imu.p_v_s));
+  const ReferencePose of_imu =
+      rawlog::moved_to_imu(pose, rawlog::from_mrpt(sensor_pose), overview_.imu.p_v_s);
+  if (add(of_imu)) ++counts_.references;
 }
 
 void RawlogSource::Impl::take_odometry(const mrpt::obs::CObservationOdometry& odometry,
@@ -333,18 +335,18 @@ void RawlogSource::Impl::take_odometry(const mrpt::obs::CObservationOdometry& od
   if (!std::isfinite(odometry.velocityLocal.vx)) {
     fail(record, t_ns, "the wheel speed is not finite; remove the record");
   }
-  ++counts_.wheel_speeds;
-  add(WheelSpeed{t_ns, odometry.velocityLocal.vx});
+  if (add(WheelSpeed{t_ns, odometry.velocityLocal.vx})) ++counts_.wheel_speeds;
 }
 
-void RawlogSource::Impl::add(const Measurement& measurement) {
+bool RawlogSource::Impl::add(const Measurement& measurement) {
   const int64_t t_ns = stamp(measurement);
   if (t_ns < released_ns_ || t_ns <= released_increment_ns_) {
     ++counts_.late;
     if (!first_late_ns_) first_late_ns_ = t_ns;
-    return;
+    return false;
   }
   others_.emplace(t_ns, measurement);
+  return true;
 }
 
 void RawlogSource::Impl::skip(const LoggedObservation& logged, const std::string& reason) {
@@ -353,7 +355,13 @@ void RawlogSource::Impl::skip(const LoggedObservation& logged, const std::string
 }
 
 void RawlogSource::Impl::check_overlap() const {
-  if (counts_.imu_samples == 0 || counts_.fixes == 0 || imu_span_.overlaps(fix_span_)) return;
+  if (imu_span_.overlaps(fix_span_)) {
+    if (counts_.fixes > 0) return;
+    throw DataError(
+        fmt::format("'{}': every fix comes more than {:g} s late; sort the log by time, or raise "
+                    "rawlog.reorder_s",
+                    path_, options_.reorder_s));
+  }
   throw DataError(fmt::format(
       "'{}': IMU ({} to {}) and GNSS ({} to {}) do not overlap; check the time systems of the two",
       path_, rawlog::describe_stamp(imu_span_.first_ns), rawlog::describe_stamp(imu_span_.last_ns),

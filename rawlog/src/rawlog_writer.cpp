@@ -47,7 +47,7 @@ ImuSample mean_rates(const ImuIncrement& increment) {
 class RawlogWriter::Impl {
  public:
   Impl(const std::string& path, const Mounting& mounting)
-      : file_(path), archive_(file_.temporary()), mounting_(mounting) {
+      : file_(path), archive_(file_), mounting_(mounting) {
     imu_.sensorLabel = "IMU";
     imu_.sensorPose = rawlog::to_mrpt({mounting.q_v_b, Eigen::Vector3d::Zero()});
     gnss_.sensorLabel = "GNSS";

@@ -250,6 +250,16 @@ TEST_F(BadLogs, ImuAndGnssThatDoNotOverlap) {
   EXPECT_THAT(error(scratch_.path("a.rawlog")), HasSubstr("do not overlap"));
 }
 
+TEST_F(BadLogs, FixesThatAllComeLate) {
+  {
+    test::GzLog log(scratch_.path("a.rawlog"));
+    for (int64_t i = 0; i < 1000; ++i) log.write(imu_at(kBegin + i * 10 * kMs));
+    for (int64_t i = 0; i < 5; ++i) log.write(gps_at(kBegin + i * 1000 * kMs));
+  }
+  EXPECT_THAT(error(scratch_.path("a.rawlog")),
+              AllOf(HasSubstr("every fix comes more than 2 s late"), HasSubstr("sort the log")));
+}
+
 TEST_F(BadLogs, InfoTellsWhatIsThereUpToTheDamage) {
   const std::string whole = test::contents(good_log<test::PlainLog>("a.rawlog", 50));
   const std::string path = scratch_.text_file("cut.rawlog", whole.substr(0, whole.size() / 2));

@@ -50,12 +50,12 @@ struct SourceCounts {
 /// CObservationOdometry with velocities -> WheelSpeed. The rest is skipped and counted by class.
 ///
 /// Order: by stamp, as core/measurement.h says. Fixes may come up to reorder_s late.
-/// Memory: constant; it grows only with what lies within reorder_s.
+/// Memory: constant; it grows only with what lies within reorder_s, or ahead of the IMU.
 ///
 /// Throws DataError, one line naming the file, for: missing, a directory, empty, not a rawlog,
 /// truncated or damaged (byte offset, records read), records of a newer MRPT, no IMU, no GNSS, IMU
 /// stamps that go back or values that are not finite (record number and stamp), IMU and GNSS that
-/// do not overlap in time (when the log ends).
+/// do not overlap in time or fixes that are all late (when the log ends).
 class RawlogSource : public Source {
  public:
   explicit RawlogSource(const std::string& path, SampleKind samples = SampleKind::interval_mean,
