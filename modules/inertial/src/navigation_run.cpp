@@ -11,13 +11,19 @@
 #include "foucault/core/time.h"
 #include "foucault/geodesy/local_frame.h"
 #include "foucault/inertial/increments.h"
+#include "imu_hole.h"
 
 namespace foucault {
 
 namespace {
 
-constexpr double kRecentRatesMemory = 0.3;  // [s]: beyond vibration, well within a manoeuvre
-constexpr double kNoticeableGap = 0.2;      // [s]: a few lost samples are not worth a line
+constexpr double kRecentRatesMemory = 0.3;     // [s]: beyond vibration, well within a manoeuvre
+constexpr double kHoleThatMayHideATurn = 0.5;  // [s]
+constexpr double kLongestWait = 3;             // [s], for fixes after a hole
+constexpr double kNoticeableGap = 0.2;         // [s]: a few lost samples are not worth a line
+/// After a hole the attitude may be off by tens of degrees, beyond what is linear: sigmas are then
+/// too small for a while, and every fix is needed.
+constexpr int64_t kGateOpenAfterGapNs = 10 * kNanosecondsPerSecond;
 constexpr double kPi = 3.14159265358979323846;
 
 std::string text(int64_t t_ns) { return fmt::format("{:.3f} s", to_seconds(t_ns)); }
@@ -95,6 +101,8 @@ void GapOptions::fields(ConfigFields& f) {
   f.number("accel_sigma_m_s2", accel_sigma_m_s2, kNotNegative,
            "specific force in a hole against the one before it, 1 sigma");
 }
+
+NavigationRun::~NavigationRun() = default;
 
 NavigationRun::NavigationRun(std::unique_ptr<Navigator> navigator, Aligner aligner,
                              const NavigationRunOptions& options, Sink& sink)
@@ -205,6 +213,8 @@ void NavigationRun::realign(const ImuIncrement& next) {
 void NavigationRun::take(const Measurement& measurement) {
   if (!aligned_) {  // a hole found while replaying has ended the alignment
     align(measurement);
+  } else if (hole_) {
+    look_beyond_hole(measurement);
   } else if (const auto* increment = std::get_if<ImuIncrement>(&measurement)) {
     take_increment(*increment);
   } else if (const auto* fix = std::get_if<GnssFix>(&measurement)) {
@@ -236,37 +246,74 @@ void NavigationRun::take_increment(const ImuIncrement& increment) {
   if (increment.t_end_ns <= time_ns_) return;  // before the start
   ImuIncrement rest = increment;
   if (rest.t_begin_ns < time_ns_) rest = split(increment, time_ns_).second;
-  if (rest.t_begin_ns > time_ns_ && !bridge_gap(rest)) return;
+  if (rest.t_begin_ns > time_ns_) {
+    meet_hole(rest);
+    return;
+  }
   advance(rest);
   recent_.add(rest);
   if (options_.rate == EpochRate::imu) emit_epoch();
 }
 
-/// False if the hole is too long and a new alignment has begun with `next`.
-bool NavigationRun::bridge_gap(const ImuIncrement& next) {
+/// Short holes are bridged at once, long ones end the alignment. In between what follows is held
+/// back until the course after the hole tells how the vehicle has turned in it.
+void NavigationRun::meet_hole(const ImuIncrement& next) {
   const double gap = seconds_between(time_ns_, next.t_begin_ns);
   if (gap > options_.gaps.max_gap_s) {
     realign(next);
-    return false;
+    return;
   }
   if (recent_.memory == 0) recent_.add(next);
-  const double root = std::sqrt(gap);
-  const int64_t step_ns = next.t_end_ns - next.t_begin_ns;
-  while (time_ns_ < next.t_begin_ns) {
-    ImuIncrement made_up;
-    made_up.t_begin_ns = time_ns_;
-    made_up.t_end_ns = std::min(time_ns_ + step_ns, next.t_begin_ns);
-    made_up.dtheta_b = recent_.gyro_b * made_up.dt();
-    made_up.dvel_b = recent_.accel_b * made_up.dt();
-    made_up.extra_gyro_noise_density = options_.gaps.rate_sigma_deg_s * kPi / 180 * root;
-    made_up.extra_accel_noise_density = options_.gaps.accel_sigma_m_s2 * root;
-    advance(made_up);
-  }
+  hole_ = std::make_unique<ImuHole>();
+  hole_->before.t_ns = time_ns_;
+  hole_->gyro_before_b = recent_.gyro_b;
+  hole_->accel_before_b = recent_.accel_b;
+  hole_->after = next;
   recent_ = RecentRates();
-  sink_.notice(
-      {next.t_begin_ns, NoticeKind::imu_gap,
-       fmt::format("no IMU data for {:.3f} s up to {}; bridged", gap, text(next.t_begin_ns))});
-  return true;
+  beyond_hole_.push_back(next);
+  if (gap < kHoleThatMayHideATurn) {
+    leave_hole();
+  } else {
+    hole_->before = navigator_->epoch();
+  }
+}
+
+void NavigationRun::look_beyond_hole(const Measurement& measurement) {
+  const auto* increment = std::get_if<ImuIncrement>(&measurement);
+  const bool next_hole = increment && increment->t_begin_ns > beyond_hole_end_ns();
+  beyond_hole_.push_back(measurement);
+  const double waited = seconds_between(hole_->after.t_begin_ns, stamp(measurement));
+  if (std::holds_alternative<GnssFix>(measurement)) hole_->turn = turn_over(*hole_, beyond_hole_);
+  if (hole_->turn || next_hole || waited > kLongestWait) leave_hole();
+}
+
+int64_t NavigationRun::beyond_hole_end_ns() const {
+  for (auto m = beyond_hole_.rbegin(); m != beyond_hole_.rend(); ++m) {
+    if (const auto* increment = std::get_if<ImuIncrement>(&*m)) return increment->t_end_ns;
+  }
+  return hole_->after.t_end_ns;
+}
+
+/// Propagates over the hole, then over what was held back.
+void NavigationRun::leave_hole() {
+  const std::unique_ptr<ImuHole> hole = std::move(hole_);
+  std::deque<Measurement> beyond;
+  beyond.swap(beyond_hole_);
+  const bool noticeable = hole->length() >= kNoticeableGap;
+  if (noticeable) gate_open_until_ns_ = hole->after.t_begin_ns + kGateOpenAfterGapNs;
+  // Fixes in the hole came before its end was known; those after it wait their turn.
+  const int64_t step_ns = hole->after.t_end_ns - hole->after.t_begin_ns;
+  while (time_ns_ < hole->after.t_begin_ns) {
+    const int64_t end_ns = std::min(time_ns_ + step_ns, hole->after.t_begin_ns);
+    advance(made_up_increment(*hole, options_.gaps, time_ns_, end_ns));
+  }
+  if (noticeable) {
+    sink_.notice(
+        {time_ns_, NoticeKind::imu_gap,
+         fmt::format("no IMU data for {:.3f} s up to {}; bridged{}", hole->length(), text(time_ns_),
+                     hole->turn ? ", with the turn that GNSS shows" : "")});
+  }
+  for (const Measurement& measurement : beyond) take(measurement);
 }
 
 void NavigationRun::RecentRates::add(const ImuIncrement& increment) {
@@ -375,7 +422,7 @@ void NavigationRun::handle_fix(const GnssFix& fix) {
 FixVerdict NavigationRun::judge(const GnssFix& fix, const Innovation& innovation) {
   if (fix.quality < quality_from(options_.gnss.min_quality)) return FixVerdict::low_quality;
   const double tail = chi_square_3_tail(normalized_square(innovation));
-  if (tail >= options_.gnss.gate_false_alarm) {
+  if (tail >= options_.gnss.gate_false_alarm || fix.t_ns <= gate_open_until_ns_) {
     gated_in_a_row_ = 0;
     return FixVerdict::used;
   }
@@ -407,6 +454,7 @@ void NavigationRun::notice_first_rejection(const GnssFix& fix, FixVerdict verdic
 // The end ---------------------------------------------------------------------------------------
 
 void NavigationRun::finish() {
+  while (hole_) leave_hole();
   throw_if_nothing_usable();
   if (!started_before_) throw DataError(aligner_.why_not());
 }

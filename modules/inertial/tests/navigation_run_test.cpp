@@ -38,10 +38,10 @@ struct Log {
   }
 };
 
-/// Stands still at kPlace; innovations as it is told.
+/// Stands at kPlace whatever its velocity; records what it is asked.
 class FakeNavigator : public Navigator {
  public:
-  explicit FakeNavigator(Log& log) : log_(log) {}
+  FakeNavigator(Log& log, const Vector3d& velocity_n) : log_(log), velocity_n_(velocity_n) {}
 
   void start(const Epoch& initial) override {
     log_.starts.push_back(initial);
@@ -70,11 +70,13 @@ class FakeNavigator : public Navigator {
     Epoch epoch;
     epoch.t_ns = now_ns_;
     epoch.position = kPlace;
+    epoch.velocity_n = velocity_n_;
     return epoch;
   }
 
  private:
   Log& log_;
+  Vector3d velocity_n_;
   int64_t now_ns_ = 0;
 };
 
@@ -116,7 +118,7 @@ class NavigationRunTest : public ::testing::Test {
       alignment.mode = "given";
       alignment.roll_deg = alignment.pitch_deg = alignment.heading_deg = 0;
       run_ = std::make_unique<NavigationRun>(
-          std::make_unique<FakeNavigator>(log_),
+          std::make_unique<FakeNavigator>(log_, velocity_n_),
           Aligner(alignment, imu_preset("ADIS16465"), Mounting{}), options_, sink_);
     }
     return *run_;
@@ -146,6 +148,7 @@ class NavigationRunTest : public ::testing::Test {
   }
 
   NavigationRunOptions options_;
+  Vector3d velocity_n_ = Vector3d::Zero();
   Log log_;
   RecordingSink sink_;
   std::unique_ptr<NavigationRun> run_;
@@ -247,6 +250,9 @@ TEST_F(NavigationRunTest, BridgesAHoleWithTheRatesBeforeItAndMoreNoise) {
   run().process(fix_at(1505));
   log_.propagated.clear();
   run().process(increment_between(2500, 2510));
+  EXPECT_TRUE(log_.propagated.empty());  // until the course after the hole is known, or the end
+  run().finish();
+  ASSERT_FALSE(log_.propagated.empty());
   double extra = 0, angle = 0, covered = 0;
   for (const ImuIncrement& increment : log_.propagated) {
     if (increment.t_end_ns > at(2500)) continue;
@@ -264,6 +270,39 @@ TEST_F(NavigationRunTest, BridgesAHoleWithTheRatesBeforeItAndMoreNoise) {
   EXPECT_THAT(log_.calls, ElementsAre("hold@1010", "update@1505", "hold@2505"));
   ASSERT_GE(sink_.notices.size(), 2u);
   EXPECT_EQ(sink_.notices.back().kind, NoticeKind::imu_gap);
+}
+
+TEST_F(NavigationRunTest, ShortHolesAreBridgedAtOnce) {
+  align();
+  feed_imu(10, 100);
+  run().process(increment_between(300, 310));
+  EXPECT_EQ(log_.propagated.back().t_end_ns, at(310));
+}
+
+TEST_F(NavigationRunTest, TheCourseAfterAHoleTellsTheTurnInIt) {
+  velocity_n_ = Vector3d(10, 0, 0);
+  options_.gnss.gate_false_alarm = 0;  // the fake navigator does not move along
+  align();
+  feed_imu(10, 500);
+  log_.propagated.clear();
+  feed_imu(3500, 3600);
+  run().process(fix_at(3605, Vector3d(20, 10, 0)));
+  feed_imu(3600, 4600);
+  run().process(fix_at(4605, Vector3d(20, 20, 0)));  // east; it went north before
+  feed_imu(4600, 4700);
+  Vector3d angle = Vector3d::Zero(), velocity = Vector3d::Zero();
+  for (const ImuIncrement& increment : log_.propagated) {
+    if (increment.t_end_ns > at(3500)) break;
+    angle += increment.dtheta_b;
+    velocity += increment.dvel_b;
+    EXPECT_LT(increment.extra_gyro_noise_density,
+              options_.gaps.rate_sigma_deg_s * kDeg * std::sqrt(3.0));
+  }
+  EXPECT_NEAR(angle.x(), 0.3, 1e-9);       // as before the hole
+  EXPECT_NEAR(angle.z(), M_PI / 2, 1e-3);  // chord in the NED of its own place
+  EXPECT_NEAR(velocity.y(), 10 * M_PI / 2, 1e-2);
+  EXPECT_EQ(log_.updates.size(), 2u);
+  EXPECT_THAT(sink_.notices.back().text, HasSubstr("turn"));
 }
 
 TEST_F(NavigationRunTest, AlignsAnewAfterALongHole) {
@@ -435,7 +474,7 @@ TEST(NavigationRunWithRest, ReplaysWhatCameBeforeTheAlignment) {
   RecordingSink sink;
   NavigationRunOptions options;
   options.gnss.gate_false_alarm = 0;  // the fake navigator does not move along
-  NavigationRun run(std::make_unique<FakeNavigator>(log),
+  NavigationRun run(std::make_unique<FakeNavigator>(log, Vector3d::Zero()),
                     Aligner(AlignmentOptions(), imu_preset("ADIS16465"), Mounting{}), options,
                     sink);
   int64_t fixes = 0, increments = 0;

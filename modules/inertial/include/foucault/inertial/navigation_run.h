@@ -27,8 +27,8 @@ class GnssOptions : public Configurable {
 };
 
 /// Section `gaps` of the configuration: how holes in the IMU stream are bridged. Over a hole the
-/// mean rates before it are taken on; the sigmas are those of what the vehicle does instead, as
-/// constant errors over the hole.
+/// rates are interpolated between its ends, turned by what the courses before and after it tell;
+/// the sigmas are those of what the vehicle does instead, as constant errors over the hole.
 class GapOptions : public Configurable {
  public:
   double max_gap_s = 10;        ///< longer: the alignment is done anew
@@ -37,6 +37,8 @@ class GapOptions : public Configurable {
 
   void fields(ConfigFields& f) override;
 };
+
+struct ImuHole;
 
 enum class EpochRate { epochs, imu };
 
@@ -52,9 +54,12 @@ struct NavigationRunOptions {
 /// - A hold comes when node_interval_s has passed since the last fix that was used (or hold).
 /// - Epochs go to the sink at the start, after every fix, hold and request, one a stamp; with
 ///   EpochRate::imu also at the end of every increment.
-/// - Holes between increments are bridged (GapOptions); beyond max_gap_s the run aligns again.
+/// - Holes between increments are bridged (GapOptions), those of half a second and more not before
+///   fixes after the hole tell how the vehicle turned in it, at most 3 s later; beyond max_gap_s
+///   the run aligns again.
 /// - Fixes are gated by the chi-square test of their innovation (3 degrees of freedom). After
-///   reinstate_after gated ones in a row the gate stays open until a fix passes it by itself.
+///   reinstate_after gated ones in a row the gate stays open until a fix passes it by itself; it is
+///   open for ten seconds after a hole.
 /// - Fixes up to the alignment's start stamp are not used again and have no FixResult.
 /// Memory is bounded: before alignment, at most what the Aligner may still start from is held.
 /// process() throws DataError for increments that overlap, go back or have no length.
@@ -64,6 +69,7 @@ class NavigationRun : public Estimator {
  public:
   NavigationRun(std::unique_ptr<Navigator> navigator, Aligner aligner,
                 const NavigationRunOptions& options, Sink& sink);
+  ~NavigationRun() override;
 
   void process(const Measurement& measurement) override;
   void finish() override;
@@ -97,7 +103,10 @@ class NavigationRun : public Estimator {
   void take(const Measurement& measurement);
   void take_event(const Event& event);
   void take_increment(const ImuIncrement& increment);
-  bool bridge_gap(const ImuIncrement& next);
+  void meet_hole(const ImuIncrement& next);
+  void look_beyond_hole(const Measurement& measurement);
+  int64_t beyond_hole_end_ns() const;
+  void leave_hole();
   void realign(const ImuIncrement& next);
   void advance(const ImuIncrement& increment);
   std::optional<int64_t> next_stop(int64_t end_ns) const;
@@ -131,7 +140,10 @@ class NavigationRun : public Estimator {
   RecentRates recent_;
   std::deque<Measurement> held_;
   std::deque<Event> pending_;
+  std::unique_ptr<ImuHole> hole_;        ///< met but not yet bridged
+  std::deque<Measurement> beyond_hole_;  ///< what came after it, from the increment that ends it
   int64_t gated_in_a_row_ = 0;
+  int64_t gate_open_until_ns_ = 0;
   bool noticed_bad_ = false;
   Counts counts_;
 };
