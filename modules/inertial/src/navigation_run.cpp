@@ -23,7 +23,7 @@ constexpr double kLongestWait = 3;             // [s], for fixes after a hole
 constexpr double kNoticeableGap = 0.2;         // [s]: a few lost samples are not worth a line
 /// After a hole the attitude may be off by tens of degrees, beyond what is linear: sigmas are then
 /// too small for a while, and every fix is needed.
-constexpr int64_t kGateOpenAfterGapNs = 10 * kNanosecondsPerSecond;
+constexpr int64_t kGateOpenNs = 10 * kNanosecondsPerSecond;
 constexpr double kPi = 3.14159265358979323846;
 
 std::string text(int64_t t_ns) { return fmt::format("{:.3f} s", to_seconds(t_ns)); }
@@ -180,6 +180,7 @@ void NavigationRun::start(const Epoch& initial) {
   time_ns_ = initial.t_ns;
   last_node_ns_ = initial.t_ns;
   gated_in_a_row_ = 0;
+  last_quality_ = FixQuality::fixed_rtk;
   navigator_->start(initial);
   emit_epoch();
 
@@ -300,7 +301,7 @@ void NavigationRun::leave_hole() {
   std::deque<Measurement> beyond;
   beyond.swap(beyond_hole_);
   const bool noticeable = hole->length() >= kNoticeableGap;
-  if (noticeable) gate_open_until_ns_ = hole->after.t_begin_ns + kGateOpenAfterGapNs;
+  if (noticeable) gate_open_until_ns_ = hole->after.t_begin_ns + kGateOpenNs;
   // Fixes in the hole came before its end was known; those after it wait their turn.
   const int64_t step_ns = hole->after.t_end_ns - hole->after.t_begin_ns;
   while (time_ns_ < hole->after.t_begin_ns) {
@@ -421,6 +422,8 @@ void NavigationRun::handle_fix(const GnssFix& fix) {
 
 FixVerdict NavigationRun::judge(const GnssFix& fix, const Innovation& innovation) {
   if (fix.quality < quality_from(options_.gnss.min_quality)) return FixVerdict::low_quality;
+  // Worse fixes before may have pulled the state away, with sigmas that promised too much.
+  if (fix.quality > last_quality_) gate_open_until_ns_ = fix.t_ns + kGateOpenNs;
   const double tail = chi_square_3_tail(normalized_square(innovation));
   if (tail >= options_.gnss.gate_false_alarm || fix.t_ns <= gate_open_until_ns_) {
     gated_in_a_row_ = 0;
@@ -432,6 +435,7 @@ FixVerdict NavigationRun::judge(const GnssFix& fix, const Innovation& innovation
 
 void NavigationRun::use(const GnssFix& fix, FixResult& result) {
   navigator_->update(fix);
+  last_quality_ = fix.quality;
   remember_fix_time();
   const Epoch epoch = navigator_->epoch();
   result.postfit_n = difference_n(fix.antenna, antenna_of(epoch, fix.p_b_a));

@@ -376,6 +376,17 @@ TEST_F(NavigationRunTest, ManyOutliersInARowAreBelieved) {
   EXPECT_THAT(verdicts, ElementsAre(gated, gated, gated, used, used, used, gated));
 }
 
+TEST_F(NavigationRunTest, ABetterFixIsNotGatedForTheSakeOfWorseOnes) {
+  align();
+  GnssFix floating = fix_at(20);
+  floating.quality = FixQuality::float_rtk;
+  run().process(floating);
+  run().process(fix_at(30, Vector3d(10, 0, 0)));
+  feed_imu(10, 40);
+  ASSERT_EQ(sink_.fixes.size(), 2u);
+  EXPECT_EQ(sink_.fixes[1].verdict, FixVerdict::used);
+}
+
 TEST_F(NavigationRunTest, FixesOfLowQualityAreLeftOut) {
   options_.gnss.min_quality = "fixed_rtk";
   align();

@@ -59,7 +59,7 @@ struct NavigationRunOptions {
 ///   the run aligns again.
 /// - Fixes are gated by the chi-square test of their innovation (3 degrees of freedom). After
 ///   reinstate_after gated ones in a row the gate stays open until a fix passes it by itself; it is
-///   open for ten seconds after a hole.
+///   also open for ten seconds after a hole, and from a fix better in quality than the last used.
 /// - Fixes up to the alignment's start stamp are not used again and have no FixResult.
 /// Memory is bounded: before alignment, at most what the Aligner may still start from is held.
 /// process() throws DataError for increments that overlap, go back or have no length.
@@ -144,6 +144,7 @@ class NavigationRun : public Estimator {
   std::deque<Measurement> beyond_hole_;  ///< what came after it, from the increment that ends it
   int64_t gated_in_a_row_ = 0;
   int64_t gate_open_until_ns_ = 0;
+  FixQuality last_quality_ = FixQuality::fixed_rtk;  ///< of the last fix used
   bool noticed_bad_ = false;
   Counts counts_;
 };
