@@ -282,14 +282,27 @@ Series mark_at(double x, double y, const std::string& label, Shape shape, double
   return mark;
 }
 
+/// The side of an end of the track that the track does not leave to: it leaves to where its first
+/// point is that is `distance` away, seen from that end.
+template <class Iterator>
+Side free_side(Iterator x, Iterator x_end, double distance) {
+  const double at = *x;
+  const Iterator away =
+      std::find_if(x, x_end, [&](double value) { return std::abs(value - at) > distance; });
+  return away == x_end || *away > at ? Side::left : Side::right;
+}
+
 /// Marks where the track starts and ends; one label if that is the same place.
 void mark_ends(const Series& track, Panel& panel) {
   if (track.x.empty()) return;
-  Annotation start{track.x.front(), track.y.front(), "start", Side::left, Ink::black};
-  const Annotation end{track.x.back(), track.y.back(), "end", Side::right, Ink::black};
+  const double size = std::max(x_span(panel).width(), y_span(panel).width());
+  const double step = 0.01 * size;
+  Annotation start{track.x.front(), track.y.front(), "start",
+                   free_side(track.x.begin(), track.x.end(), step), Ink::black};
+  const Annotation end{track.x.back(), track.y.back(), "end",
+                       free_side(track.x.rbegin(), track.x.rend(), step), Ink::black};
   panel.series.push_back(mark_at(start.x, start.y, "start", Shape::ring, 7));
   panel.series.push_back(mark_at(end.x, end.y, "end", Shape::square, 6));
-  const double size = std::max(x_span(panel).width(), y_span(panel).width());
   if (std::hypot(end.x - start.x, end.y - start.y) < 0.04 * size) {
     start.text = "start, end";
     panel.annotations = {start};

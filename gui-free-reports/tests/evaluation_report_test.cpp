@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <limits>
 #include <random>
@@ -182,6 +184,7 @@ TEST(EvaluationReportPage, IsWrittenWhole) {
         "error_timeline_trip_rawlog", "outage_map_trip_rawlog", "tune_arw_vrw"}) {
     EXPECT_TRUE(std::filesystem::exists(folder / (std::string(name) + ".png"))) << name;
   }
+  if (std::getenv("FOUCAULT_KEEP_REPORT") == nullptr) std::filesystem::remove_all(folder);
 }
 
 }  // namespace
