@@ -9,6 +9,7 @@ const std::vector<Command>& commands() {
       {"import", "turn recordings in other formats into a rawlog", declare_import},
       {"info", "contents, rates, gaps and health of a rawlog", declare_info},
       {"run", "process a rawlog: solution files, metrics, report", declare_run},
+      {"evaluate", "withhold fixes, measure the drift of every method", declare_evaluate},
       {"report", "draw a report again from its numbers", declare_report},
   };
   return all;

@@ -21,6 +21,7 @@ void Settings::fields(ConfigFields& f) {
   f.section("fgo", fgo, "factor graph: methods refined and rough");
   f.section("ekf", ekf, "Kalman filter: method ekf");
   f.section("rawlog", rawlog, "what is taken from a log with several sensors");
+  f.section("outages", outages, "simulated outages: commands evaluate and tune");
   f.section("output", output, "what is written");
 }
 

@@ -4,6 +4,7 @@
 
 #include "foucault/core/config.h"
 #include "foucault/ekf/ekf.h"
+#include "foucault/evaluation/outage.h"
 #include "foucault/fgo/fgo_options.h"
 #include "foucault/inertial/alignment.h"
 #include "foucault/inertial/imu_noise.h"
@@ -32,6 +33,7 @@ class Settings : public Configurable {
   FgoOptions fgo;
   EkfOptions ekf;
   RawlogOptions rawlog;
+  OutageOptions outages;  ///< for evaluate and tune
   OutputOptions output;
 
   void fields(ConfigFields& f) override;

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "console.h"
+#include "foucault/evaluation/experiment.h"
+#include "settings.h"
+
+namespace foucault::app {
+
+/// One method on one log; settings.outages.shifts_s make a run each.
+struct EvaluationCase {
+  std::string log;        ///< rawlog
+  std::string recording;  ///< its name in tables
+  std::string imu;        ///< recordings of one IMU are joined in tables
+  std::string method;     ///< see methods.h
+  std::string label;      ///< of the method in tables; empty: its name
+  Settings settings;
+};
+
+/// Every method on every log with the same settings; recordings are named by their files.
+/// Throws UsageError if a log or method is given twice.
+std::vector<EvaluationCase> cross(const std::vector<std::string>& logs,
+                                  const std::vector<std::string>& methods,
+                                  const Settings& settings);
+
+/// The runs of a case, one a shift. Throws UsageError for settings that make no sense.
+std::vector<ExperimentRun> experiment_runs(const EvaluationCase& evaluation_case);
+
+/// Opens each log once: what is missing or no rawlog shows before hours are spent on others, and
+/// MRPT's registry of classes, which may not be filled by two threads at once, is filled.
+void check_logs(const std::vector<std::string>& logs, const Settings& settings);
+
+/// Runs all cases on `threads` threads; results in the order of the cases, then of the shifts.
+/// Says what users should know about the data. Throws DataError, UsageError, Interrupted.
+std::vector<ExperimentResult> evaluate(const std::vector<EvaluationCase>& cases, int threads,
+                                       Console& console);
+
+}  // namespace foucault::app

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "console.h"
+#include "foucault/evaluation/experiment.h"
+
+/// What an evaluation writes and says.
+namespace foucault::app {
+
+struct EvaluationLabels {
+  std::string title = "Outage evaluation";
+  std::vector<std::string> remarks;  ///< paragraphs at the top of the report
+  std::string command_line;
+  std::string config;  ///< the effective configuration, YAML
+};
+
+/// Results, joined in the ways in which they are shown. Differences are from the first method.
+class EvaluationSummary {
+ public:
+  /// Throws DataError if the methods have no outage in common, naming the one that has none.
+  explicit EvaluationSummary(std::vector<ExperimentResult> results);
+  EvaluationSummary(const EvaluationSummary&) = delete;
+  EvaluationSummary& operator=(const EvaluationSummary&) = delete;
+
+  const std::vector<ExperimentResult>& results() const { return results_; }
+  const std::vector<std::string>& methods() const { return methods_; }
+
+  /// All outages, an entry a method.
+  const std::vector<MethodOutages>& overall() const { return overall_; }
+  /// The rows of the tables, see table_rows().
+  const std::vector<MethodOutages>& rows() const { return rows_; }
+  /// What heads the column that names the rows: "IMU" or "Recording".
+  const std::string& row_header() const { return row_header_; }
+
+  TextTable rms_table() const;         ///< Table III
+  TextTable difference_table() const;  ///< Table IV
+  TextTable statistics_table() const;
+
+ private:
+  std::vector<ExperimentResult> results_;
+  std::vector<std::string> methods_;
+  std::vector<MethodOutages> overall_;
+  std::vector<MethodOutages> rows_;
+  std::string row_header_;
+};
+
+/// drift.csv, metrics.json, config.yaml and tables/table_iii, table_iv, statistics (.csv, .md).
+void write_evaluation(const EvaluationSummary& summary, const EvaluationLabels& labels,
+                      const std::filesystem::path& folder);
+
+/// The tables and what they rest on, for the terminal.
+std::vector<std::string> evaluation_lines(const EvaluationSummary& summary);
+
+/// How long, how often and against what, in one sentence.
+std::string outages_text(const EvaluationSummary& summary);
+
+}  // namespace foucault::app
