@@ -124,9 +124,10 @@ ErrorTimeline::Curve timeline_curve(const ExperimentResult& run) {
 ErrorTimeline timeline(const ComparedRuns& runs, const std::string& name) {
   ErrorTimeline timeline{name, {}, {}};
   const OutageRunResult& first = runs.front()->run;
-  for (const OutageDrift& drift : first.drifts) {
-    timeline.outages.push_back({seconds_between(first.first_fix_ns, drift.outage.begin_ns),
-                                seconds_between(first.first_fix_ns, drift.outage.end_ns)});
+  for (const Outage& outage : first.withheld) {
+    timeline.outages.push_back(
+        {seconds_between(first.first_fix_ns, outage.begin_ns),
+         seconds_between(first.first_fix_ns, std::min(outage.end_ns, first.last_fix_ns))});
   }
   for (const ExperimentResult* run : runs) timeline.curves.push_back(timeline_curve(*run));
   return timeline;
@@ -161,14 +162,14 @@ OutageMap outage_map(const ComparedRuns& runs, const std::string& name) {
   walk(
       first.track, [&](const TrackPoint& p) { add(map.truth, truth(p)); },
       [&] { add_gap(map.truth); });
-  for (const OutageDrift& drift : first.run.drifts) {
-    for (const TrackPoint& p : during(first, drift.outage)) add(map.truth_in_outages, truth(p));
+  for (const Outage& outage : first.run.withheld) {
+    for (const TrackPoint& p : during(first, outage)) add(map.truth_in_outages, truth(p));
     add_gap(map.truth_in_outages);
   }
   for (const ExperimentResult* run : runs) {
     OutageMap::Estimate estimate{run->method, {}};
-    for (const OutageDrift& drift : run->run.drifts) {
-      for (const TrackPoint& p : during(*run, drift.outage)) {
+    for (const Outage& outage : run->run.withheld) {
+      for (const TrackPoint& p : during(*run, outage)) {
         add(estimate.path, frame.to_local(p.position));
       }
       add_gap(estimate.path);

@@ -48,7 +48,6 @@ class Program {
   int run(int argc, char** argv) {
     if (argc > 1) check_command(argv[1]);
     app_.parse(argc, argv);
-    watch_interrupts();
     Console console(quiet_);
     Call call{console, join_arguments(argc, argv)};
     actions_.at(app_.get_subcommands().front())(call);
@@ -120,4 +119,7 @@ int guarded_run(int argc, char** argv) {
 }  // namespace
 }  // namespace foucault::app
 
-int main(int argc, char** argv) { return foucault::app::guarded_run(argc, argv); }
+int main(int argc, char** argv) {
+  foucault::app::watch_interrupts();
+  return foucault::app::guarded_run(argc, argv);
+}

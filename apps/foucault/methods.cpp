@@ -2,25 +2,34 @@
 
 #include <fmt/format.h>
 
+#include <limits>
 #include <utility>
 
 #include "foucault/core/error.h"
 #include "foucault/ekf/ekf.h"
+#include "foucault/ekf/rts_smoother.h"
 #include "foucault/fgo/window_navigator.h"
 #include "foucault/inertial/navigation_run.h"
 
 namespace foucault::app {
 namespace {
 
-std::unique_ptr<Estimator> drive(std::unique_ptr<Navigator> navigator, const Settings& settings,
-                                 const Mounting& mounting, Sink& sink) {
+constexpr double kForever = std::numeric_limits<double>::infinity();
+
+NavigationRunOptions run_options(const Settings& settings) {
   NavigationRunOptions options;
   options.gnss = settings.gnss;
   options.gaps = settings.gaps;
   options.node_interval_s = settings.fgo.node_interval_s;
   options.rate = settings.output.epoch_rate();
+  return options;
+}
+
+std::unique_ptr<Estimator> drive(std::unique_ptr<Navigator> navigator, const Settings& settings,
+                                 const Mounting& mounting, Sink& sink) {
   Aligner aligner(settings.alignment, settings.imu.noise(), mounting);
-  return std::make_unique<NavigationRun>(std::move(navigator), std::move(aligner), options, sink);
+  return std::make_unique<NavigationRun>(std::move(navigator), std::move(aligner),
+                                         run_options(settings), sink);
 }
 
 template <PreintegrationModel model>
@@ -36,6 +45,13 @@ std::unique_ptr<Estimator> make_ekf(const Settings& settings, const Mounting& mo
   return drive(std::move(navigator), settings, mounting, sink);
 }
 
+std::unique_ptr<Estimator> make_rts(const Settings& settings, const Mounting& mounting,
+                                    Sink& sink) {
+  Aligner aligner(settings.alignment, settings.imu.noise(), mounting);
+  return std::make_unique<RtsSmoother>(settings.imu.noise(), settings.ekf, std::move(aligner),
+                                       run_options(settings), sink);
+}
+
 }  // namespace
 
 const std::vector<Method>& methods() {
@@ -45,6 +61,8 @@ const std::vector<Method>& methods() {
        make_window<PreintegrationModel::refined>},
       {"rough", "factor graph, the Earth's rotation neglected (M2)",
        make_window<PreintegrationModel::rough>},
+      {"rts", "the filter forward, then a smoother backward: every epoch from all fixes", make_rts,
+       kForever},
   };
   return all;
 }

@@ -17,6 +17,8 @@ struct Method {
   std::string name;
   std::string summary;
   EstimatorFactory make;
+  /// How far its epochs may lag behind the measurements [s]; a smoother's come at the end.
+  double keep_references_s = 600;
 };
 
 /// In the order shown to users.

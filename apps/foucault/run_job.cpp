@@ -19,13 +19,24 @@
 namespace foucault::app {
 namespace {
 
-void process(RawlogSource& source, Estimator& estimator, RunOutput& output, Console& console) {
+/// An estimator does not know where its measurements come from; whoever reads its errors should.
+template <class Work>
+void naming(const std::string& log, Work work) {
+  try {
+    work();
+  } catch (const DataError& error) {
+    throw DataError(fmt::format("'{}': {}", log, error.what()));
+  }
+}
+
+void process(const std::string& log, RawlogSource& source, Estimator& estimator, RunOutput& output,
+             Console& console) {
   while (const std::optional<Measurement> measurement = source.next()) {
     output.measurement(*measurement);
-    estimator.process(*measurement);
+    naming(log, [&] { estimator.process(*measurement); });
     console.progress("processing", source.progress());
   }
-  estimator.finish();
+  naming(log, [&] { estimator.finish(); });
   for (const Notice& notice : source.notices()) output.notice(notice);
 }
 
@@ -53,10 +64,10 @@ RunResult run_into(const RunJob& job, const std::filesystem::path& folder, Conso
   RawlogSource source(job.log, settings.imu.sample_kind(), settings.rawlog);
   std::optional<reports::RunReport> report;
   if (job.report) report.emplace(labels(job, config), source.mounting());
-  RunOutput output(folder, source.mounting(), settings.output, report ? &*report : nullptr,
-                   console);
+  RunOutput output(folder, source.mounting(), settings.output, method.keep_references_s,
+                   report ? &*report : nullptr, console);
   const std::unique_ptr<Estimator> estimator = method.make(settings, source.mounting(), output);
-  process(source, *estimator, output, console);
+  process(job.log, source, *estimator, output, console);
 
   RunResult result;
   result.method = job.method;

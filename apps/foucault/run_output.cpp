@@ -8,14 +8,28 @@
 #include "units.h"
 
 namespace foucault::app {
+namespace {
+
+ReferenceComparisonOptions comparison_options(double keep_s) {
+  ReferenceComparisonOptions options;
+  options.keep_s = keep_s;
+  return options;
+}
+
+}  // namespace
 
 RunOutput::RunOutput(const std::filesystem::path& folder, const Mounting& mounting,
-                     const OutputOptions& options, reports::RunReport* report, Console& console)
+                     const OutputOptions& options, double keep_references_s,
+                     reports::RunReport* report, Console& console)
     : mounting_(mounting),
       statistics_from_s_(options.statistics_from_s),
       solution_(folder, mounting),
-      comparison_(mounting, [this](const Epoch& epoch,
-                                   const ReferenceError& error) { reference_error(epoch, error); }),
+      comparison_(
+          mounting,
+          [this](const Epoch& epoch, const ReferenceError& error) {
+            reference_error(epoch, error);
+          },
+          comparison_options(keep_references_s)),
       report_(report),
       console_(console) {}
 

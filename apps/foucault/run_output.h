@@ -16,9 +16,11 @@ namespace foucault::app {
 /// Where everything that comes out of a run goes: solution files, metrics, report, console.
 class RunOutput : public Sink {
  public:
-  /// `report` may be null. It and the console must outlive this.
+  /// `keep_references_s`: how far epochs may lag behind references. `report` may be null; it and
+  /// the console must outlive this.
   RunOutput(const std::filesystem::path& folder, const Mounting& mounting,
-            const OutputOptions& options, reports::RunReport* report, Console& console);
+            const OutputOptions& options, double keep_references_s, reports::RunReport* report,
+            Console& console);
 
   /// Every measurement, before the estimator gets it: references and stamps are taken from it.
   void measurement(const Measurement& measurement);

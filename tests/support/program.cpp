@@ -61,9 +61,13 @@ class Child {
 
 Outcome foucault(const std::vector<std::string>& arguments) { return Child(arguments).wait(); }
 
-Outcome foucault_interrupted(const std::vector<std::string>& arguments, double seconds) {
+Outcome foucault_interrupted(const std::vector<std::string>& arguments,
+                             const std::function<bool()>& now) {
   const Child child(arguments);
-  std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::minutes(1);
+  while (!now() && std::chrono::steady_clock::now() < deadline) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
   child.terminate();
   return child.wait();
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,8 +18,9 @@ struct Outcome {
 /// Runs the built `foucault` with `arguments`, stdin empty.
 Outcome foucault(const std::vector<std::string>& arguments);
 
-/// Starts it, sends SIGTERM after `seconds`, and waits for its end.
-Outcome foucault_interrupted(const std::vector<std::string>& arguments, double seconds);
+/// Starts it, sends SIGTERM once `now` says so (or after a minute), and waits for its end.
+Outcome foucault_interrupted(const std::vector<std::string>& arguments,
+                             const std::function<bool()>& now);
 
 /// Folder of the real recordings: $FOUCAULT_DATA_DIR, else shared/data beside the repository.
 std::optional<std::filesystem::path> shared_data();
