@@ -61,6 +61,8 @@ const std::vector<Method>& methods() {
        make_window<PreintegrationModel::refined>},
       {"rough", "factor graph, the Earth's rotation neglected (M2)",
        make_window<PreintegrationModel::rough>},
+      {"full", "refined with the gravity vector of each place: exact over any distance",
+       make_window<PreintegrationModel::full>},
       {"rts", "the filter forward, then a smoother backward: every epoch from all fixes", make_rts,
        kForever},
   };

@@ -42,7 +42,7 @@ bool GnssFactor::Evaluate(double const* const* blocks, double* residual, double*
   Eigen::Map<Eigen::Vector3d>{residual} = -sqrt_information_ * antenna_innovation(x, fix_);
   if (jacobians != nullptr && jacobians[0] != nullptr) {
     Eigen::Map<Eigen::Matrix<double, 3, 16, Eigen::RowMajor>>{jacobians[0]} =
-        sqrt_information_ * antenna_jacobian(x, fix_) * minus_jacobian(blocks[0]);
+        ambient_jacobian<3>(sqrt_information_ * antenna_jacobian(x, fix_), blocks[0]);
   }
   return true;
 }

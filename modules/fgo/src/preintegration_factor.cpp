@@ -16,8 +16,8 @@ Matrix15d inverse_cholesky(const Matrix15d& covariance) {
 }
 
 void write_jacobian(const Matrix15d& tangent, const double* block, double* out) {
-  Eigen::Map<Eigen::Matrix<double, 15, 16, Eigen::RowMajor>>{out}.noalias() =
-      tangent * minus_jacobian(block);
+  Eigen::Map<Eigen::Matrix<double, 15, 16, Eigen::RowMajor>>{out} =
+      ambient_jacobian<15>(tangent, block);
 }
 
 }  // namespace

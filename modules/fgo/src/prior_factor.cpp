@@ -31,8 +31,8 @@ bool PriorFactor::Evaluate(double const* const* blocks, double* residual,
   const Linearized prior = linearize(read_block(blocks[0]));
   Eigen::Map<Vector15d>{residual} = prior.r;
   if (jacobians != nullptr && jacobians[0] != nullptr) {
-    Eigen::Map<Eigen::Matrix<double, 15, 16, Eigen::RowMajor>>{jacobians[0]}.noalias() =
-        prior.J * minus_jacobian(blocks[0]);
+    Eigen::Map<Eigen::Matrix<double, 15, 16, Eigen::RowMajor>>{jacobians[0]} =
+        ambient_jacobian<15>(prior.J, blocks[0]);
   }
   return true;
 }

@@ -46,9 +46,13 @@ Eigen::Matrix<double, 15, 16, Eigen::RowMajor> minus_jacobian(const double* bloc
   Eigen::Matrix<double, 15, 16, Eigen::RowMajor> J =
       Eigen::Matrix<double, 15, 16, Eigen::RowMajor>::Zero();
   J.block<6, 6>(error_state::kPosition, kP).setIdentity();
-  J.block<3, 4>(error_state::kAttitude, kQ) = 4 * quaternion_plus_jacobian(block + kQ).transpose();
+  J.block<3, 4>(error_state::kAttitude, kQ) = quaternion_minus_jacobian(block + kQ);
   J.block<6, 6>(error_state::kGyroBias, kBg).setIdentity();
   return J;
+}
+
+Eigen::Matrix<double, 3, 4> quaternion_minus_jacobian(const double* q) {
+  return 4 * quaternion_plus_jacobian(q).transpose();
 }
 
 bool StateManifold::Plus(const double* x, const double* delta, double* x_plus_delta) const {

@@ -44,17 +44,17 @@ ceres::Solver::Options solver_options(const FgoOptions& options) {
   return solver;
 }
 
-/// Stops when the step that was taken is known to be the last one that matters. The cost left is
-/// about what the quadratic model missed, |1 - actual/model| of the change; at 1e-6, a step of
-/// another thousandth of a sigma. Without this every solve ends with an iteration that only
-/// confirms.
+/// Stops when the step that was taken is known to be the last one that matters. If the quadratic
+/// model missed the change of cost by a share e, the gradient left is of order e and the cost left
+/// e^2 of the change; at 1e-6, a step of another thousandth of a sigma. Without this every solve
+/// ends with an iteration that only confirms.
 class StopWhenModelHolds final : public ceres::IterationCallback {
  public:
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& iteration) override {
     constexpr double kCostLeft = 1e-6;
-    const bool done =
-        iteration.iteration > 0 && iteration.step_is_successful &&
-        std::abs((1 - iteration.relative_decrease) * iteration.cost_change) < kCostLeft;
+    const double missed = 1 - iteration.relative_decrease;
+    const bool done = iteration.iteration > 0 && iteration.step_is_successful &&
+                      missed * missed * std::abs(iteration.cost_change) < kCostLeft;
     return done ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
   }
 };
@@ -149,6 +149,7 @@ Innovation WindowNavigator::innovation(const GnssFix& fix) const {
 void WindowNavigator::update(const GnssFix& fix) {
   if (!at_node()) add_node();
   Node& node = nodes_.back();
+  node.forward.reset();
   node.fixes.push_back(std::make_unique<GnssFactor>(to_local(fix, *frame_)));
   problem_->AddResidualBlock(node.fixes.back().get(), loss_.get(), node.x.data());
   solve();
@@ -213,6 +214,7 @@ bool WindowNavigator::reintegrate_moved_biases() {
     interval.factor = std::make_unique<PreintegrationFactor>(integrator.result(), earth);
     interval.block = problem_->AddResidualBlock(interval.factor.get(), nullptr, nodes_[i].x.data(),
                                                 nodes_[i + 1].x.data());
+    nodes_[i + 1].forward.reset();
     moved = true;
   }
   return moved;
@@ -260,18 +262,29 @@ double WindowNavigator::loss_weight(const GnssFactor::Linearized& fix) const {
   return rho[1];
 }
 
+/// Information on each node from all before it, kept from epoch to epoch. It depends on the
+/// estimates by their attitudes alone, and to first order; a node that has not turned by kSettled
+/// keeps what it has, so that an epoch costs little more than its own node.
 void WindowNavigator::update_covariance() {
-  NodeInformation info = information(nodes_.front());
-  info.add(prior_->linearize(read_block(nodes_.front().x.data())));
-  for (std::size_t i = 0; i < intervals_.size(); ++i) {
-    const NodeState x0 = read_block(nodes_[i].x.data());
-    const NodeState x1 = read_block(nodes_[i + 1].x.data());
-    info = eliminate(info, intervals_[i].factor->linearize(x0, x1));
-    const NodeInformation own = information(nodes_[i + 1]);
-    info.H += own.H;
-    info.b += own.b;
+  constexpr double kSettled = 2e-4;  // [rad]: 0.02 % of a sigma
+  bool moved = false;
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    Node& node = nodes_[i];
+    const NodeState x = read_block(node.x.data());
+    moved = moved || !node.forward || x.q_w_b.angularDistance(node.forward->attitude) > kSettled;
+    if (!moved) continue;
+    NodeInformation info = information(node);
+    if (i == 0) {
+      info.add(prior_->linearize(x));
+    } else {
+      const NodeState before = read_block(nodes_[i - 1].x.data());
+      const NodeInformation carried = eliminate(nodes_[i - 1].forward->information,
+                                                intervals_[i - 1].factor->linearize(before, x));
+      info.H += carried.H;
+    }
+    node.forward = Node::Forward{info, x.q_w_b};
   }
-  covariance_ = covariance(info);
+  covariance_ = covariance(nodes_.back().forward->information);
 }
 
 }  // namespace foucault

@@ -21,6 +21,22 @@ void write_block(const NodeState& x, double* block);
 Eigen::Matrix<double, 16, 15, Eigen::RowMajor> plus_jacobian(const double* block);
 Eigen::Matrix<double, 15, 16, Eigen::RowMajor> minus_jacobian(const double* block);
 
+/// d dtheta / d(xyzw) at the unit quaternion q.
+Eigen::Matrix<double, 3, 4> quaternion_minus_jacobian(const double* q);
+
+/// tangent * minus_jacobian(block): only the attitude's columns are more than copied.
+template <int kRows>
+Eigen::Matrix<double, kRows, 16, Eigen::RowMajor> ambient_jacobian(
+    const Eigen::Matrix<double, kRows, 15>& tangent, const double* block) {
+  using error_state::kAttitude;
+  Eigen::Matrix<double, kRows, 16, Eigen::RowMajor> J;
+  J.template leftCols<6>() = tangent.template leftCols<6>();
+  J.template middleCols<4>(6) =
+      tangent.template middleCols<3>(kAttitude) * quaternion_minus_jacobian(block + 6);
+  J.template rightCols<6>() = tangent.template rightCols<6>();
+  return J;
+}
+
 /// Right perturbation, boxplus and boxminus of motion.h.
 class StateManifold final : public ceres::Manifold {
  public:

@@ -40,9 +40,15 @@ class WindowNavigator final : public Navigator {
 
  private:
   struct Node {
+    /// What the past and this node's fixes say of it, linearized at an attitude.
+    struct Forward {
+      NodeInformation information;
+      Eigen::Quaterniond attitude;
+    };
     int64_t t_ns = 0;
     StateBlock x{};
     std::vector<std::unique_ptr<GnssFactor>> fixes;
+    std::optional<Forward> forward;
   };
   /// Between a node and the next.
   struct Interval {
