@@ -22,12 +22,6 @@ constexpr double kAgreement = 4;      // chi-square per degree of freedom
 constexpr double kSideslipArm = 1.5;                  // [m]
 constexpr double kCrabSigma = 0.3 * 0.0174532925199;  // [rad], of a single course
 
-double course_sigma(const Eigen::Matrix3d& covariance, const Eigen::Vector3d& way) {
-  const Eigen::Vector2d across = Eigen::Vector2d(-way.y(), way.x()).normalized();
-  const double variance = across.dot(covariance.topLeftCorner<2, 2>() * across);
-  return std::sqrt(variance) / way.head<2>().norm();
-}
-
 Eigen::Vector3d forward_l(const LevelAttitude& attitude) {
   return attitude.q_l_b * attitude.forward_b;
 }
@@ -43,6 +37,12 @@ double azimuth(const Eigen::Vector3d& vector) { return std::atan2(vector.y(), ve
 
 double horizontal_sigma(const Eigen::Matrix3d& covariance) {
   return std::sqrt(std::max(covariance(0, 0), covariance(1, 1)));
+}
+
+double course_sigma(const Eigen::Matrix3d& covariance, const Eigen::Vector3d& way) {
+  const Eigen::Vector2d across = Eigen::Vector2d(-way.y(), way.x()).normalized();
+  const double variance = across.dot(covariance.topLeftCorner<2, 2>() * across);
+  return std::sqrt(variance) / way.head<2>().norm();
 }
 
 void CourseFinder::interrupt() {

@@ -38,7 +38,11 @@ struct HeadingOffset {
 
 /// Largest horizontal sigma [m] at which positions give better courses than velocities do.
 constexpr double kPreciseSigma = 0.3;
+/// Larger of the sigmas along north and east.
 double horizontal_sigma(const Eigen::Matrix3d& covariance);
+
+/// Sigma [rad] of the azimuth of a way or velocity with this covariance.
+double course_sigma(const Eigen::Matrix3d& covariance, const Eigen::Vector3d& way);
 
 /// Compares courses over ground with the azimuth of the vehicle's forward axis, over consecutive
 /// fixes of the best quality while the vehicle drives straight and fast. Courses come from the way

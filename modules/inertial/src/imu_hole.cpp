@@ -28,11 +28,6 @@ struct CourseAfter {
   double turned = 0;
 };
 
-double across_sigma(const Eigen::Matrix3d& covariance, const Vector3d& way) {
-  const Eigen::Vector2d across = Eigen::Vector2d(-way.y(), way.x()).normalized();
-  return std::sqrt(across.dot(covariance.topLeftCorner<2, 2>() * across)) / way.head<2>().norm();
-}
-
 /// Turn about the vertical from the hole's end, growing with the increments.
 class TurnAfter {
  public:
@@ -55,7 +50,7 @@ std::optional<CourseAfter> course_by_velocity(const GnssFix& fix, double turned)
     return std::nullopt;
   }
   return CourseAfter{azimuth(*fix.velocity_n),
-                     across_sigma(fix.velocity_covariance, *fix.velocity_n), turned};
+                     course_sigma(fix.velocity_covariance, *fix.velocity_n), turned};
 }
 
 std::optional<CourseAfter> course_by_way(const GnssFix& first, double turned_first,
@@ -65,7 +60,7 @@ std::optional<CourseAfter> course_by_way(const GnssFix& first, double turned_fir
   const Vector3d way = LocalFrame(first.antenna).to_local(last.antenna);
   if (way.head<2>().norm() < kSlowest * dt) return std::nullopt;
   return CourseAfter{azimuth(way),
-                     across_sigma(first.position_covariance + last.position_covariance, way),
+                     course_sigma(first.position_covariance + last.position_covariance, way),
                      0.5 * (turned_first + turned_last)};
 }
 
@@ -102,7 +97,7 @@ std::optional<HoleTurn> turn_over(const ImuHole& hole, const std::deque<Measurem
       hole.before.covariance.block<3, 3>(error_state::kVelocity, error_state::kVelocity);
   HoleTurn turn;
   turn.angle = so3::wrap(end->course - azimuth(velocity) - end->turned);
-  turn.sigma = std::hypot(std::hypot(end->sigma, across_sigma(P, velocity)), kSideslipSigma);
+  turn.sigma = std::hypot(std::hypot(end->sigma, course_sigma(P, velocity)), kSideslipSigma);
   return turn;
 }
 

@@ -24,6 +24,8 @@ constexpr double kNoticeableGap = 0.2;         // [s]: a few lost samples are no
 /// After a hole the attitude may be off by tens of degrees, beyond what is linear: sigmas are then
 /// too small for a while, and every fix is needed.
 constexpr int64_t kGateOpenNs = 10 * kNanosecondsPerSecond;
+constexpr double kLevelMemory = 30;   // fixes
+constexpr double kLargestShare = 10;  // of one fix, times the level
 constexpr double kPi = 3.14159265358979323846;
 
 std::string text(int64_t t_ns) { return fmt::format("{:.3f} s", to_seconds(t_ns)); }
@@ -122,30 +124,35 @@ void NavigationRun::process(const Measurement& measurement) {
 
 void NavigationRun::count(const Measurement& measurement) {
   if (const auto* increment = std::get_if<ImuIncrement>(&measurement)) {
+    check_order(*increment);
     ++counts_.increments;
-    const bool backward = last_increment_end_ns_ && increment->t_begin_ns < *last_increment_end_ns_;
-    if (backward || increment->t_end_ns <= increment->t_begin_ns) {
-      throw DataError(fmt::format(
-          "IMU increment from {} to {} overlaps what came before (up to {}); sort the IMU data by "
-          "time and remove duplicates",
-          text(increment->t_begin_ns), text(increment->t_end_ns),
-          text(last_increment_end_ns_.value_or(increment->t_begin_ns))));
-    }
     last_increment_end_ns_ = increment->t_end_ns;
+  } else if (const auto* fix = std::get_if<GnssFix>(&measurement)) {
+    count_fix(*fix);
   }
-  if (const auto* fix = std::get_if<GnssFix>(&measurement)) {
-    ++counts_.fixes;
-    const bool good_position = position_is_valid(fix->antenna);
-    const bool good_sigma = covariance_is_valid(weighted(*fix, options_.gnss).position_covariance);
-    if (!good_position) {
-      ++counts_.bad_position;
-    } else if (!good_sigma) {
-      ++counts_.bad_sigma;
-    } else if (fix->quality < quality_from(options_.gnss.min_quality)) {
-      ++counts_.low_quality;
-    }
-    if ((!good_position || !good_sigma) && !counts_.first_bad_ns) counts_.first_bad_ns = fix->t_ns;
+}
+
+void NavigationRun::check_order(const ImuIncrement& increment) const {
+  const int64_t before_ns = last_increment_end_ns_.value_or(increment.t_begin_ns);
+  if (increment.t_begin_ns >= before_ns && increment.t_end_ns > increment.t_begin_ns) return;
+  throw DataError(
+      fmt::format("IMU increment from {} to {} overlaps what came before (up to {}); sort the IMU "
+                  "data by time and remove duplicates",
+                  text(increment.t_begin_ns), text(increment.t_end_ns), text(before_ns)));
+}
+
+void NavigationRun::count_fix(const GnssFix& fix) {
+  ++counts_.fixes;
+  const bool good_position = position_is_valid(fix.antenna);
+  const bool good_sigma = covariance_is_valid(weighted(fix, options_.gnss).position_covariance);
+  if (!good_position) {
+    ++counts_.bad_position;
+  } else if (!good_sigma) {
+    ++counts_.bad_sigma;
+  } else if (fix.quality < quality_from(options_.gnss.min_quality)) {
+    ++counts_.low_quality;
   }
+  if ((!good_position || !good_sigma) && !counts_.first_bad_ns) counts_.first_bad_ns = fix.t_ns;
 }
 
 // Alignment -------------------------------------------------------------------------------------
@@ -180,6 +187,7 @@ void NavigationRun::start(const Epoch& initial) {
   time_ns_ = initial.t_ns;
   last_node_ns_ = initial.t_ns;
   gated_in_a_row_ = 0;
+  innovation_level_ = 1;
   last_quality_ = FixQuality::fixed_rtk;
   navigator_->start(initial);
   emit_epoch();
@@ -424,13 +432,23 @@ FixVerdict NavigationRun::judge(const GnssFix& fix, const Innovation& innovation
   if (fix.quality < quality_from(options_.gnss.min_quality)) return FixVerdict::low_quality;
   // Worse fixes before may have pulled the state away, with sigmas that promised too much.
   if (fix.quality > last_quality_) gate_open_until_ns_ = fix.t_ns + kGateOpenNs;
-  const double tail = chi_square_3_tail(normalized_square(innovation));
-  if (tail >= options_.gnss.gate_false_alarm || fix.t_ns <= gate_open_until_ns_) {
+  if (passes_gate(normalized_square(innovation)) || fix.t_ns <= gate_open_until_ns_) {
     gated_in_a_row_ = 0;
     return FixVerdict::used;
   }
-  ++gated_in_a_row_;
-  return gated_in_a_row_ > options_.gnss.reinstate_after ? FixVerdict::used : FixVerdict::gated;
+  if (++gated_in_a_row_ <= options_.gnss.reinstate_after) return FixVerdict::gated;
+  gate_open_until_ns_ = fix.t_ns + kGateOpenNs;
+  return FixVerdict::used;
+}
+
+/// Chi-square test against the level that innovations have had of late: where sigmas are too small
+/// throughout, an outlier is what stands out of the others. One fix raises the level by a third at
+/// most.
+bool NavigationRun::passes_gate(double square) {
+  const double level = std::max(1.0, innovation_level_);
+  const double mean_square = std::min(square / 3, kLargestShare * level);
+  innovation_level_ += (mean_square - innovation_level_) / kLevelMemory;
+  return chi_square_3_tail(square / level) >= options_.gnss.gate_false_alarm;
 }
 
 void NavigationRun::use(const GnssFix& fix, FixResult& result) {

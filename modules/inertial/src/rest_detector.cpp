@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "course_finder.h"
 #include "foucault/core/time.h"
 #include "foucault/geodesy/local_frame.h"
 
@@ -17,10 +18,6 @@ constexpr std::size_t kRecentBlocks = 20;
 constexpr int kDisturbedBlocks = 3;        // more end the rest
 constexpr double kStandingSpeed = 0.2;     // [m/s], beyond 3 sigma
 constexpr double kStandingDistance = 0.1;  // [m], beyond 4 sigma
-
-double horizontal_sigma(const Eigen::Matrix3d& covariance) {
-  return std::sqrt(std::max(covariance(0, 0), covariance(1, 1)));
-}
 
 /// Variance of a mean, given the difference of the means of the two halves. White noise makes that
 /// difference of twice the sigma of the mean; what is far beyond is drift, and as much as the

@@ -397,6 +397,32 @@ TEST(Alignment, HeadingAloneCompletesARest) {
   EXPECT_NEAR(heading_sigma(*outcome.initial), 2 * kDeg, 1e-3 * kDeg);
 }
 
+TEST(Alignment, OptionsRoundTrip) {
+  AlignmentOptions options;
+  load_config_text(
+      "{mode: given, roll_deg: 1, pitch_deg: -2, heading_deg: 300, roll_sigma_deg: 0.1,"
+      " pitch_sigma_deg: 0.2, heading_sigma_deg: 0.3, min_speed_m_s: 4, max_course_sigma_deg: 5,"
+      " max_turn_rate_deg_s: 6.5, mounting_sigma_deg: 0.7, min_rest_s: 8, max_rest_s: 90}",
+      "test", options);
+  AlignmentOptions again;
+  load_config_text(dump_config(options), "again", again);
+  EXPECT_EQ(again.mode, "given");
+  EXPECT_EQ(again.roll_deg, 1);
+  EXPECT_EQ(again.pitch_deg, -2);
+  EXPECT_EQ(again.heading_deg, 300);
+  EXPECT_EQ(again.roll_sigma_deg, 0.1);
+  EXPECT_EQ(again.pitch_sigma_deg, 0.2);
+  EXPECT_EQ(again.heading_sigma_deg, 0.3);
+  EXPECT_EQ(again.min_speed_m_s, 4);
+  EXPECT_EQ(again.max_course_sigma_deg, 5);
+  EXPECT_EQ(again.max_turn_rate_deg_s, 6.5);
+  EXPECT_EQ(again.mounting_sigma_deg, 0.7);
+  EXPECT_EQ(again.min_rest_s, 8);
+  EXPECT_EQ(again.max_rest_s, 90);
+  EXPECT_THROW(set_config("pitch_deg=91", options), UsageError);
+  EXPECT_THROW(set_config("mode=manual", options), UsageError);
+}
+
 TEST(Alignment, SaysWhyThereIsNone) {
   Sensors sensors = industrial_sensors();
   Drive standing;

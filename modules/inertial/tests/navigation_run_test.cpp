@@ -367,9 +367,10 @@ TEST_F(NavigationRunTest, ManyOutliersInARowAreBelieved) {
   options_.gnss.reinstate_after = 3;
   align();
   for (int i = 2; i < 7; ++i) run().process(fix_at(10 * i, Vector3d(10, 0, 0)));
-  run().process(fix_at(70));                      // good: closes the gate again
-  run().process(fix_at(80, Vector3d(10, 0, 0)));  // an outlier like the first
-  feed_imu(10, 90);
+  run().process(fix_at(70));
+  feed_imu(10, 15000);
+  run().process(fix_at(15010, Vector3d(10, 0, 0)));  // the gate has long closed again
+  feed_imu(15000, 15020);
   std::vector<FixVerdict> verdicts;
   for (const FixResult& result : sink_.fixes) verdicts.push_back(result.verdict);
   const FixVerdict used = FixVerdict::used, gated = FixVerdict::gated;
@@ -518,6 +519,17 @@ TEST(GnssOptions, RoundTripAndRanges) {
   EXPECT_EQ(again.reinstate_after, 7);
   EXPECT_THROW(set_config("sigma_scale=0", options), UsageError);
   EXPECT_THROW(set_config("gate_false_alarm=1", options), UsageError);
+}
+
+TEST(GapOptions, RoundTripAndRanges) {
+  GapOptions options;
+  load_config_text("{max_gap_s: 7, rate_sigma_deg_s: 3, accel_sigma_m_s2: 0.5}", "test", options);
+  GapOptions again;
+  load_config_text(dump_config(options), "again", again);
+  EXPECT_EQ(again.max_gap_s, 7);
+  EXPECT_EQ(again.rate_sigma_deg_s, 3);
+  EXPECT_EQ(again.accel_sigma_m_s2, 0.5);
+  EXPECT_THROW(set_config("max_gap_s=-1", options), UsageError);
 }
 
 }  // namespace

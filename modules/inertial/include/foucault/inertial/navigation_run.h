@@ -21,7 +21,7 @@ class GnssOptions : public Configurable {
   double sigma_scale = 1;           ///< multiplies the sigmas of positions
   double sigma_floor_m = 0;         ///< smallest sigma of a position, each axis
   double gate_false_alarm = 1e-7;   ///< probability that a good fix is gated; 0: no gate
-  int64_t reinstate_after = 5;      ///< gated fixes in a row after which the gate opens
+  int64_t reinstate_after = 3;      ///< gated fixes in a row after which the gate opens
 
   void fields(ConfigFields& f) override;
 };
@@ -57,9 +57,10 @@ struct NavigationRunOptions {
 /// - Holes between increments are bridged (GapOptions), those of half a second and more not before
 ///   fixes after the hole tell how the vehicle turned in it, at most 3 s later; beyond max_gap_s
 ///   the run aligns again.
-/// - Fixes are gated by the chi-square test of their innovation (3 degrees of freedom). After
-///   reinstate_after gated ones in a row the gate stays open until a fix passes it by itself; it is
-///   also open for ten seconds after a hole, and from a fix better in quality than the last used.
+/// - Fixes are gated by the chi-square test of their innovation (3 degrees of freedom), relative to
+///   the mean of recent ones where that is above its expectation. The gate opens for ten seconds
+///   after reinstate_after gated ones in a row (it is the state that is wrong), after a hole, and
+///   from a fix better in quality than the last used.
 /// - Fixes up to the alignment's start stamp are not used again and have no FixResult.
 /// Memory is bounded: before alignment, at most what the Aligner may still start from is held.
 /// process() throws DataError for increments that overlap, go back or have no length.
@@ -96,6 +97,8 @@ class NavigationRun : public Estimator {
   };
 
   void count(const Measurement& measurement);
+  void check_order(const ImuIncrement& increment) const;
+  void count_fix(const GnssFix& fix);
   void align(const Measurement& measurement);
   void start(const Epoch& initial);
   void drop_what_no_start_needs();
@@ -116,6 +119,7 @@ class NavigationRun : public Estimator {
   void handle_stop();
   void handle_fix(const GnssFix& fix);
   FixVerdict judge(const GnssFix& fix, const Innovation& innovation);
+  bool passes_gate(double square);
   void use(const GnssFix& fix, FixResult& result);
   void remember_fix_time();
   void hold();
@@ -144,6 +148,8 @@ class NavigationRun : public Estimator {
   std::deque<Measurement> beyond_hole_;  ///< what came after it, from the increment that ends it
   int64_t gated_in_a_row_ = 0;
   int64_t gate_open_until_ns_ = 0;
+  double innovation_level_ =
+      1;  ///< recent mean of normalized innovations squared, 1 if all is well
   FixQuality last_quality_ = FixQuality::fixed_rtk;  ///< of the last fix used
   bool noticed_bad_ = false;
   Counts counts_;
