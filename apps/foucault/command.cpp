@@ -10,6 +10,7 @@ const std::vector<Command>& commands() {
       {"info", "contents, rates, gaps and health of a rawlog", declare_info},
       {"run", "process a rawlog: solution files, metrics, report", declare_run},
       {"evaluate", "withhold fixes, measure the drift of every method", declare_evaluate},
+      {"tune", "search the parameters with the least drift", declare_tune},
       {"report", "draw a report again from its numbers", declare_report},
   };
   return all;

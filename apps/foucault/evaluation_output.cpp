@@ -170,13 +170,9 @@ void write_table(const TextTable& table, const std::filesystem::path& folder,
   write_text_file(folder / (name + ".md"), to_markdown(table));
 }
 
-/// The lines of a text, one by one.
 void append_lines(std::vector<std::string>& lines, const std::string& text) {
-  for (std::size_t begin = 0; begin < text.size();) {
-    const std::size_t end = text.find('\n', begin);
-    lines.push_back(text.substr(begin, end - begin));
-    begin = end + 1;
-  }
+  const std::vector<std::string> more = text_lines(text);
+  lines.insert(lines.end(), more.begin(), more.end());
 }
 
 std::string truth_text(const std::vector<ExperimentResult>& results) {
@@ -237,6 +233,16 @@ std::string outages_text(const EvaluationSummary& summary) {
   return fmt::format("{} of {} in {} recording{}; truth: {}",
                      summary.overall().front().entries.size(), lengths_text(summary.overall()),
                      recordings, recordings == 1 ? "" : "s", truth_text(summary.results()));
+}
+
+std::vector<std::string> text_lines(const std::string& text) {
+  std::vector<std::string> lines;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    lines.push_back(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return lines;
 }
 
 std::vector<std::string> evaluation_lines(const EvaluationSummary& summary) {

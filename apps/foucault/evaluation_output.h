@@ -54,6 +54,9 @@ void write_evaluation(const EvaluationSummary& summary, const EvaluationLabels& 
 /// The tables and what they rest on, for the terminal.
 std::vector<std::string> evaluation_lines(const EvaluationSummary& summary);
 
+/// A text without its line ends.
+std::vector<std::string> text_lines(const std::string& text);
+
 /// How long, how often and against what, in one sentence.
 std::string outages_text(const EvaluationSummary& summary);
 

@@ -55,7 +55,10 @@ Json reference_json(const ReferenceMetrics& reference) {
           {"samples", reference.samples}};
 }
 
-std::string centimetres(const Eigen::Vector3d& v) {
+/// "-" if no fix counts for the statistics.
+std::string innovation_text(const GnssMetrics& gnss) {
+  if (gnss.samples == 0) return "-";
+  const Eigen::Vector3d& v = gnss.innovation_rms_n;
   return fmt::format("{:.2f} / {:.2f} / {:.2f} cm", 100 * v.x(), 100 * v.y(), 100 * v.z());
 }
 
@@ -131,7 +134,7 @@ std::vector<std::string> metrics_lines(const RunResult& result) {
   std::vector<std::string> lines{
       fmt::format("method     {}, {} epochs over {:.1f} s", result.method, m.epochs, m.duration_s),
       fmt::format("GNSS       {} fixes used, {} rejected; innovation RMS north / east / down {}",
-                  m.gnss.used, m.gnss.rejected, centimetres(m.gnss.innovation_rms_n))};
+                  m.gnss.used, m.gnss.rejected, innovation_text(m.gnss))};
   if (m.reference) {
     lines.push_back(fmt::format("reference  RMS error horizontal {:.3f} m, vertical {:.3f} m{}",
                                 m.reference->horizontal_rmse, m.reference->vertical_rmse,
@@ -152,10 +155,11 @@ std::vector<reports::KeyNumber> key_numbers(const RunResult& result) {
     numbers.push_back({"Vertical error, RMS", fmt::format("{:.3f}", m.reference->vertical_rmse),
                        "m", "against the reference"});
   }
-  const Eigen::Vector3d& innovation = m.gnss.innovation_rms_n;
-  numbers.push_back({"Innovation, horizontal RMS",
-                     fmt::format("{:.2f}", 100 * innovation.head<2>().norm()), "cm",
-                     "fix minus prediction"});
+  if (m.gnss.samples > 0) {
+    const double horizontal = m.gnss.innovation_rms_n.head<2>().norm();
+    numbers.push_back({"Innovation, horizontal RMS", fmt::format("{:.2f}", 100 * horizontal), "cm",
+                       "fix minus prediction"});
+  }
   numbers.push_back({"Fixes used", fmt::format("{}", m.gnss.used), "",
                      fmt::format("{} rejected", m.gnss.rejected)});
   numbers.push_back(
@@ -169,7 +173,7 @@ std::vector<reports::KeyNumber> key_numbers(const RunResult& result) {
 std::vector<reports::Table> metrics_tables(const RunResult& result) {
   std::vector<reports::Table> tables;
   if (result.metrics.reference) tables.push_back(reference_table(*result.metrics.reference));
-  tables.push_back(gnss_table(result.metrics.gnss));
+  if (result.metrics.gnss.samples > 0) tables.push_back(gnss_table(result.metrics.gnss));
   return tables;
 }
 
