@@ -7,12 +7,12 @@
 #include <utility>
 #include <vector>
 
+#include "carried_attitude.h"
 #include "course_finder.h"
 #include "foucault/core/error.h"
-#include "foucault/core/so3.h"
 #include "foucault/core/time.h"
+#include "foucault/core/vehicle_attitude.h"
 #include "foucault/geodesy/local_frame.h"
-#include "foucault/geodesy/wgs84.h"
 #include "initial_state.h"
 #include "moving_alignment.h"
 #include "rest_detector.h"
@@ -30,11 +30,8 @@ constexpr double kLargestHole = 0.1;      // [s]: over a longer one the attitude
 constexpr double kRestSpeedSigma = 0.01;  // [m/s]
 /// With the heading given, a rest is complete at this length [s].
 constexpr double kEnoughRest = 10;
-constexpr double kGyroScaleSigma = 0.003;  // of the angle turned: scale factor, misalignment
 /// Measurements used in the alignment are used again in the run: their variances are doubled.
 constexpr double kReuse = 2;
-constexpr double kSpeedChecked = 30;   // [s] after rest that the inertial speed tells the direction
-constexpr double kReversing = -1.0;    // [m/s]
 constexpr double kStaleAttitude = 60;  // [s] after rest: a new rest is preferred
 
 std::optional<GivenAngle> given(const std::optional<double>& degrees, double sigma_degrees) {
@@ -65,22 +62,12 @@ CourseLimits course_limits(const AlignmentOptions& options) {
 }
 
 std::string describe(const Epoch& epoch, const Quaterniond& q_v_b) {
-  const so3::Euler euler = so3::to_euler(epoch.q_n_b * q_v_b.conjugate());
-  const Matrix3d by_b = so3::euler_jacobian(euler) * q_v_b.toRotationMatrix();
-  const Matrix3d attitude =
-      epoch.covariance.block<3, 3>(error_state::kAttitude, error_state::kAttitude);
-  const Vector3d sigma = (by_b * attitude * by_b.transpose()).diagonal().cwiseSqrt() / kDegree;
+  const VehicleAttitude attitude = vehicle_attitude(epoch, Mounting{q_v_b});
+  const Vector3d sigma = attitude.sigma / kDegree;
   return fmt::format(
       "roll {:.2f} deg (sigma {:.2f}), pitch {:.2f} ({:.2f}), heading {:.2f} ({:.2f})",
-      euler.roll / kDegree, sigma.x(), euler.pitch / kDegree, sigma.y(), euler.heading / kDegree,
-      sigma.z());
-}
-
-/// Level attitude with the forward axis at azimuth zero.
-Quaterniond level(const Vector3d& specific_force_b, const Vector3d& forward_b) {
-  const Quaterniond q = Quaterniond::FromTwoVectors(specific_force_b, Vector3d(-Vector3d::UnitZ()));
-  const double turned = azimuth(q * forward_b);
-  return Quaterniond(Eigen::AngleAxisd(-turned, Vector3d::UnitZ())) * q;
+      attitude.euler.roll / kDegree, sigma.x(), attitude.euler.pitch / kDegree, sigma.y(),
+      attitude.euler.heading / kDegree, sigma.z());
 }
 
 }  // namespace
@@ -104,71 +91,6 @@ void AlignmentOptions::fields(ConfigFields& f) {
   f.number("min_rest_s", min_rest_s, kPositive, "shorter rests are not used");
   f.number("max_rest_s", max_rest_s, {10, 3600}, "how far back the start may lie");
 }
-
-/// Carries the attitude from a rest through the drive, in a level frame whose heading at rest is 0.
-class CarriedAttitude {
- public:
-  explicit CarriedAttitude(const Vector3d& forward_b) : forward_b_(forward_b) {}
-
-  void rest(const RestMeans& means, double latitude, const ImuNoise& noise) {
-    attitude_.forward_b = forward_b_;
-    attitude_.q_l_b = level(means.accel_b, forward_b_);
-    // At rest the gyroscopes show their bias and the Earth's rate. Which way the horizontal part of
-    // the latter points is not known yet; the vertical part is what turns the heading.
-    const double vertical = wgs84::earth_rate_n(latitude).z();
-    bias_ = means.gyro_b - attitude_.q_l_b.conjugate() * Vector3d(0, 0, vertical);
-    earth_rate_z_ = vertical;
-    gravity_ = means.accel_b.norm();
-    velocity_l_.setZero();
-    since_rest_ = 0;
-    turned_ = 0;
-    const double white =
-        noise.gyro_noise_density * noise.gyro_noise_density / std::max(1.0, means.duration());
-    bias_variance_ = std::max(white, means.gyro_variance.maxCoeff());
-    noise_density_ = noise.gyro_noise_density;
-  }
-
-  void add(const ImuIncrement& increment) {
-    const double dt = increment.dt();
-    const Vector3d earth_b = attitude_.q_l_b.conjugate() * Vector3d(0, 0, earth_rate_z_);
-    const Vector3d dtheta = increment.dtheta_b - (bias_ + earth_b) * dt;
-    velocity_l_ +=
-        attitude_.q_l_b * so3::exp(0.5 * dtheta) * increment.dvel_b + Vector3d(0, 0, gravity_ * dt);
-    turned_ += (attitude_.q_l_b * dtheta).z();
-    attitude_.q_l_b = (attitude_.q_l_b * so3::exp(dtheta)).normalized();
-    attitude_.omega_b = dtheta / dt;
-    since_rest_ += dt;
-  }
-
-  const LevelAttitude& attitude() const { return attitude_; }
-  double since_rest() const { return since_rest_; }  ///< [s]
-
-  /// Variance of the azimuth's change since the rest [rad^2].
-  double drift_variance() const {
-    const double scale = kGyroScaleSigma * turned_;
-    return bias_variance_ * since_rest_ * since_rest_ +
-           noise_density_ * noise_density_ * since_rest_ + scale * scale;
-  }
-
-  /// Backwards, as far as the accelerometers can tell.
-  bool reverses() const {
-    if (since_rest_ > kSpeedChecked) return false;
-    const Vector3d forward_l = attitude_.q_l_b * forward_b_;
-    return velocity_l_.head<2>().dot(forward_l.head<2>()) < kReversing;
-  }
-
- private:
-  Vector3d forward_b_;
-  LevelAttitude attitude_;
-  Vector3d bias_ = Vector3d::Zero();
-  Vector3d velocity_l_ = Vector3d::Zero();
-  double earth_rate_z_ = 0;
-  double gravity_ = 0;
-  double since_rest_ = 0;
-  double turned_ = 0;
-  double bias_variance_ = 0;
-  double noise_density_ = 0;
-};
 
 class Aligner::Impl {
  public:
