@@ -63,15 +63,6 @@ std::vector<bool> earliest_of_recording(const std::vector<ExperimentRun>& runs) 
   return flags;
 }
 
-void check_outages(const ExperimentRun& run, const OutageRunResult& result) {
-  if (result.scheduled > 0) return;
-  const double span_s = seconds_between(result.first_fix_ns, result.last_fix_ns);
-  throw DataError(fmt::format(
-      "{}: no outage fits into its {:.0f} s of fixes, the first would end after {:.0f} s; lower "
-      "outages.first_s or outages.length_s, or give outages.starts_s",
-      run.recording, span_s, run.schedule.first_end_s().value_or(0)));
-}
-
 const std::string& group_name(const ExperimentResult& result, Grouping grouping) {
   static const std::string all = "all recordings";
   if (grouping == Grouping::all) return all;
@@ -140,13 +131,22 @@ ExperimentResult run_experiment(const ExperimentRun& run,
   return result;
 }
 
+void require_outage(const ExperimentRun& run, const OutageRunResult& result) {
+  if (result.scheduled > 0) return;
+  const double span_s = seconds_between(result.first_fix_ns, result.last_fix_ns);
+  throw DataError(fmt::format(
+      "{}: no outage fits into its {:.0f} s of fixes, the first would end after {:.0f} s; lower "
+      "outages.first_s or outages.length_s, or give outages.starts_s",
+      run.recording, span_s, run.schedule.first_end_s().value_or(0)));
+}
+
 std::vector<ExperimentResult> run_experiments(const std::vector<ExperimentRun>& runs, int threads,
                                               const std::function<void(double)>& progress) {
   const std::vector<bool> earliest = earliest_of_recording(runs);
   std::vector<ExperimentResult> results(runs.size());
   const auto task = [&](std::size_t i, const TaskProgress& part) {
     results[i] = run_experiment(runs[i], part);
-    if (earliest[i]) check_outages(runs[i], results[i].run);
+    if (earliest[i]) require_outage(runs[i], results[i].run);
   };
   run_tasks(runs.size(), threads, task, progress);
   return results;

@@ -54,7 +54,11 @@ class DriftMeter : public Sink {
     OutageRunResult result;
     result.first_fix_ns = source_.first_fix_ns().value_or(0);
     result.last_fix_ns = source_.last_fix_ns().value_or(0);
-    result.scheduled = scheduled_until(result.last_fix_ns);
+    for (const auto& [index, outage] : outages_) result.withheld.push_back(outage);
+    result.scheduled =
+        std::count_if(result.withheld.begin(), result.withheld.end(), [&](const Outage& outage) {
+          return outage.end_ns <= result.last_fix_ns + kStampToleranceNs;
+        });
     const std::vector<OutageDrift> by_reference = by_reference_.complete(result.last_fix_ns);
     const std::vector<OutageDrift> by_fixes = by_fixes_.complete(result.last_fix_ns);
     const bool use_reference = !by_reference.empty() && by_reference.size() >= by_fixes.size();
@@ -65,7 +69,7 @@ class DriftMeter : public Sink {
 
  private:
   void withheld(const Outage& outage, const GnssFix& fix) {
-    ends_ns_[outage.index] = outage.end_ns;
+    outages_.insert_or_assign(outage.index, outage);
     withheld_.withheld(outage, fix);
   }
   void withheld_error(const Outage& outage, const Epoch& epoch, const Eigen::Vector3d& error_n) {
@@ -78,14 +82,8 @@ class DriftMeter : public Sink {
     if (outage) by_reference_.add(*outage, epoch.t_ns, error.position_n);
   }
 
-  int64_t scheduled_until(int64_t until_ns) const {
-    return std::count_if(ends_ns_.begin(), ends_ns_.end(), [&](const auto& index_and_end) {
-      return index_and_end.second <= until_ns + kStampToleranceNs;
-    });
-  }
-
   OutageRunObserver* observer_;
-  std::map<int64_t, int64_t> ends_ns_;  ///< by index, of outages that withheld a fix
+  std::map<int64_t, Outage> outages_;  ///< that withheld a fix, by index
   DriftCollector by_reference_;
   DriftCollector by_fixes_;
   WithheldTruth withheld_;

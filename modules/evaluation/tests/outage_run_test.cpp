@@ -35,6 +35,7 @@ void expect_known_drift(const OutageRunResult& result) {
     EXPECT_FALSE(d.at_marks[3]);
   }
   EXPECT_EQ(result.scheduled, 3);
+  EXPECT_EQ(result.withheld.size(), 4u);
   EXPECT_EQ(result.first_fix_ns, 0);
   EXPECT_EQ(result.last_fix_ns, 275'000'000'000);
   EXPECT_GE(result.cpu_s, 0);

@@ -42,6 +42,9 @@ struct ExperimentResult {
 ExperimentResult run_experiment(const ExperimentRun& run,
                                 const std::function<void(double)>& progress);
 
+/// Throws DataError if no outage fits into the recording, naming what to change.
+void require_outage(const ExperimentRun& run, const OutageRunResult& result);
+
 /// Runs all of them on `threads` threads; the results have the order of `runs` and, but for their
 /// CPU times, do not depend on the number of threads.
 /// Throws DataError for a recording without a single outage, naming what to change.

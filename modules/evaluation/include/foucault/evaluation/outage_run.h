@@ -17,8 +17,9 @@ enum class DriftTruth { reference, withheld_fixes };
 struct OutageRunResult {
   DriftTruth truth = DriftTruth::withheld_fixes;
   std::vector<OutageDrift> drifts;  ///< complete outages only
-  /// Outages of the schedule that end before the last fix and withheld at least one. The estimator
-  /// gave nothing to measure in those that are not in `drifts`.
+  std::vector<Outage> withheld;     ///< all in which a fix was withheld, in order
+  /// How many of these end before the last fix. The estimator gave nothing to measure in those that
+  /// are not in `drifts`.
   int64_t scheduled = 0;
   int64_t first_fix_ns = 0;
   int64_t last_fix_ns = 0;
