@@ -143,6 +143,17 @@ TEST_F(I2nav, TheWeekRunsOverWithinTheLog) {
   EXPECT_EQ(all<GnssFix>(options_.out).at(0).t_ns, gps_to_unix_ns(2201, 0.5));
 }
 
+TEST_F(I2nav, GnssMayBeginInTheWeekBefore) {
+  imu(400, [](int i) { return 0.005 * i; });
+  scratch_.text_file("gnss.pos",
+                     "604799.5 30.5 114.5 20 0.01 0.01 0.02\n0.5 30.5 114.5 20 0.01 0.01 0.02\n");
+  import_i2nav(options_);
+  const auto fixes = all<GnssFix>(options_.out);
+  ASSERT_EQ(fixes.size(), 2U);
+  EXPECT_EQ(fixes[0].t_ns, gps_to_unix_ns(2199, 604799.5));
+  EXPECT_EQ(fixes[1].t_ns, gps_to_unix_ns(2200, 0.5));
+}
+
 TEST_F(I2nav, MissingRowsLeaveAHole) {
   imu(20, [](int i) { return 100 + 0.005 * (i < 10 ? i : i + 100); });
   import_i2nav(options_);
@@ -268,6 +279,13 @@ TEST_F(Csv, MountingAnglesAreTheSensorsAttitudeInTheVehicle) {
   EXPECT_NEAR(std::asin(-forward.z()) / kDegree, -6.79, 1e-10);
   EXPECT_NEAR(std::atan2(forward.y(), forward.x()) / kDegree, 5.35, 1e-10);
   EXPECT_NEAR(q_v_b.toRotationMatrix().determinant(), 1, 1e-12);
+}
+
+TEST_F(Csv, LeverArmTurnsIntoTheSensorsAxes) {
+  // Turned to the right: the sensor's forward axis looks right, its right axis backward.
+  run(std::string(kImu) + "  mounting_rpy_deg: [0, 0, 90]\n" + kGnss + "lever_arm_m: [1, 2, 3]\n");
+  RawlogSource source(options_.out);
+  EXPECT_LT((source.lever_arm() - Eigen::Vector3d(2, -1, 3)).norm(), 1e-12);
 }
 
 TEST_F(Csv, LeftHandedAxesDoNotExist) {

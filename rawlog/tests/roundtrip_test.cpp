@@ -294,6 +294,23 @@ TEST(Reorder, LateFixesArePutRightWithinTheBufferAndCountedBeyond) {
   EXPECT_EQ(second.counts().late, 0);
 }
 
+TEST(Reorder, AFixThatCanNoLongerPrecedeItsIncrementIsLate) {
+  const Scratch scratch;
+  RawlogWriter writer(scratch.path("a.rawlog"));
+  writer.write(some_fix(kBegin));
+  for (int64_t i = 0; i <= 100; ++i) {
+    const int64_t t_ns = kBegin + i * 10'000'000;
+    writer.write(ImuSample{t_ns, {0, 0, 0}, {0, 0, -9.8}});
+    if (i == 50) writer.write(some_fix(t_ns));
+  }
+  writer.finish();
+  RawlogOptions impatient;
+  impatient.reorder_s = 0;
+  RawlogSource source(scratch.path("a.rawlog"), SampleKind::interval_mean, impatient);
+  EXPECT_EQ(read_all(source).fixes.size(), 1U);
+  EXPECT_EQ(source.counts().late, 1);
+}
+
 TEST(Writer, LeavesNothingUnlessFinished) {
   const Scratch scratch;
   {
