@@ -146,7 +146,7 @@ Panel curve_panel(const MethodCurves& curves, const MethodOrder& order, Componen
   panel.y.min = 0;
   panel.y.max = top > 0 ? 1.06 * top : 1;
   panel.legend = LegendPlace::none;
-  panel.note = fmt::format("RMS of maxima {} m", significant_text(maximum_rms(curves, maximum)));
+  panel.note = fmt::format("RMS {} m", significant_text(maximum_rms(curves, maximum)));
   panel.series = {all_curves(curves, component, rms.ink), rms};
   return panel;
 }
@@ -165,7 +165,8 @@ Figure drift_curves(const DriftCase& drift_case, const MethodOrder& order) {
   figure.subtitle = outages_text(drift_case);
   figure.caption =
       "Position error from the beginning of each outage: a thin line an outage, the thick line "
-      "their RMS. Equal axes for all methods. Drift that grows evenly is normal; one line far "
+      "their RMS; the figure above each panel is the RMS of the maxima. Equal axes for all "
+      "methods. Drift that grows evenly is normal; one line far "
       "above "
       "the rest is an outage worth a look.";
   figure.height_mm = 165;
