@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <mutex>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -40,14 +42,75 @@ std::unique_ptr<RawlogSource> open_log(const std::string& log, const Settings& s
   return std::make_unique<RawlogSource>(log, settings.imu.sample_kind(), settings.rawlog);
 }
 
-/// An estimator that gives out at its end needs all references till then.
-constexpr double kKeepReferences = 1e7;  // [s]
+/// An estimator does not know where its measurements come from; whoever reads its errors should.
+class NamedEstimator : public Estimator {
+ public:
+  NamedEstimator(std::string name, std::unique_ptr<Estimator> estimator)
+      : name_(std::move(name)), estimator_(std::move(estimator)) {}
+
+  void process(const Measurement& measurement) override {
+    naming([&] { estimator_->process(measurement); });
+  }
+  void finish() override {
+    naming([&] { estimator_->finish(); });
+  }
+
+ private:
+  template <class Work>
+  void naming(Work work) const {
+    try {
+      work();
+    } catch (const DataError& error) {
+      throw DataError(fmt::format("{}: {}", name_, error.what()));
+    }
+  }
+
+  std::string name_;
+  std::unique_ptr<Estimator> estimator_;
+};
+
+/// What was left out of each log, from whichever of its readers came to the end.
+class LogNotices {
+ public:
+  void put(const std::string& recording, const std::vector<Notice>& notices) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    notices_.emplace(recording, notices);
+  }
+  const std::map<std::string, std::vector<Notice>>& get() const { return notices_; }
+
+ private:
+  std::mutex mutex_;
+  std::map<std::string, std::vector<Notice>> notices_;
+};
+
+class NotingSource : public Source {
+ public:
+  NotingSource(std::unique_ptr<RawlogSource> source, std::string recording, LogNotices& notices)
+      : source_(std::move(source)), recording_(std::move(recording)), notices_(notices) {}
+
+  std::optional<Measurement> next() override {
+    std::optional<Measurement> measurement = source_->next();
+    if (!measurement) notices_.put(recording_, source_->notices());
+    return measurement;
+  }
+  const Mounting& mounting() const override { return source_->mounting(); }
+  double progress() const override { return source_->progress(); }
+
+ private:
+  std::unique_ptr<RawlogSource> source_;
+  std::string recording_;
+  LogNotices& notices_;
+};
+
+void warn(const std::string& recording, const std::vector<Notice>& notices, Console& console) {
+  for (const Notice& notice : notices) {
+    if (notice.kind == NoticeKind::aligned) continue;
+    console.warn(fmt::format("{}: {}: {}", recording, format_utc(notice.t_ns), notice.text));
+  }
+}
 
 void warn(const ExperimentResult& result, Console& console) {
-  for (const Notice& notice : result.notices) {
-    if (notice.kind == NoticeKind::aligned) continue;
-    console.warn(fmt::format("{}: {}: {}", result.recording, format_utc(notice.t_ns), notice.text));
-  }
+  warn(result.recording, result.notices, console);
   const int64_t missing = result.run.scheduled - static_cast<int64_t>(result.run.drifts.size());
   if (missing > 0) {
     console.warn(fmt::format(
@@ -90,10 +153,11 @@ std::vector<ExperimentRun> experiment_runs(const EvaluationCase& evaluation_case
     run.shift_s = shift_s;
     run.schedule = OutageSchedule(settings.outages, shift_s);
     run.open = [log = evaluation_case.log, settings] { return open_log(log, settings); };
-    run.make_estimator = [make = method.make, settings](const Mounting& mounting, Sink& sink) {
-      return make(settings, mounting, sink);
+    run.make_estimator = [make = method.make, settings, name = run.recording](
+                             const Mounting& mounting, Sink& sink) {
+      return std::make_unique<NamedEstimator>(name, make(settings, mounting, sink));
     };
-    run.options.reference.keep_s = kKeepReferences;
+    run.options.reference.keep_s = method.keep_references_s;
     runs.push_back(std::move(run));
   }
   return runs;
@@ -105,13 +169,20 @@ void check_logs(const std::vector<std::string>& logs, const Settings& settings) 
 
 std::vector<ExperimentResult> evaluate(const std::vector<EvaluationCase>& cases, int threads,
                                        Console& console) {
+  LogNotices notices;
   std::vector<ExperimentRun> runs;
   for (const EvaluationCase& c : cases) {
-    for (ExperimentRun& run : experiment_runs(c)) runs.push_back(std::move(run));
+    for (ExperimentRun& run : experiment_runs(c)) {
+      run.open = [&notices, c] {
+        return std::make_unique<NotingSource>(open_log(c.log, c.settings), c.recording, notices);
+      };
+      runs.push_back(std::move(run));
+    }
   }
   for (const EvaluationCase& c : cases) check_logs({c.log}, c.settings);
   const std::vector<ExperimentResult> results =
       run_experiments(runs, threads, console.progress_of("evaluating"));
+  for (const auto& [recording, of_log] : notices.get()) warn(recording, of_log, console);
   for (const ExperimentResult& result : results) warn(result, console);
   return results;
 }

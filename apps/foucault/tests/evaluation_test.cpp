@@ -1,0 +1,170 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "evaluation_job.h"
+#include "evaluation_output.h"
+#include "evaluation_report.h"
+#include "foucault/core/error.h"
+#include "simulation_job.h"
+#include "support/table.h"
+#include "support/test_folder.h"
+
+namespace foucault::app {
+namespace {
+
+using testing::Each;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+/// A log of 300 s, with truth, made once for all tests.
+class EvaluationTest : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = new test::TestFolder;
+    Console console(true);
+    SimulationSettings trip;
+    trip.scenario.duration_s = 300;
+    trip.scenario.seed = 5;
+    write_simulation(trip, log(), console);
+  }
+  static void TearDownTestSuite() { delete folder_; }
+
+  static std::string log() { return *folder_ / "trip.rawlog"; }
+
+  /// Outages of 20 s at 150 s, 200 s, 250 s and at 175 s, 225 s, 275 s.
+  static Settings settings() {
+    Settings settings;
+    settings.outages.first_s = 150;
+    settings.outages.length_s = 20;
+    settings.outages.period_s = 50;
+    settings.outages.shifts_s = {0, 25};
+    return settings;
+  }
+
+  static std::vector<ExperimentResult> results(int threads) {
+    Console console(true);
+    return evaluate(cross({log()}, {"ekf", "rough"}, settings()), threads, console);
+  }
+
+  static test::TestFolder* folder_;
+};
+
+test::TestFolder* EvaluationTest::folder_ = nullptr;
+
+TEST_F(EvaluationTest, SameNumbersWithOneThreadAndTwo) {
+  const std::vector<double>& marks_s = default_drift_marks_s();
+  const std::string one = to_csv(drift_record_table(drift_records(results(1)), marks_s));
+  const std::string two = to_csv(drift_record_table(drift_records(results(2)), marks_s));
+  EXPECT_EQ(one, two);
+  EXPECT_EQ(std::count(one.begin(), one.end(), '\n'), 1 + 2 * 6);
+}
+
+TEST_F(EvaluationTest, WritesWhatItFound) {
+  const test::TestFolder out;
+  const EvaluationSummary summary(results(2));
+  EvaluationLabels labels;
+  labels.command_line = "foucault evaluate trip.rawlog";
+  labels.config = "imu: {preset: ADIS16465}\n";
+  write_evaluation(summary, labels, out.path());
+
+  const auto json = nlohmann::json::parse(out.text("metrics.json"));
+  for (const char* method : {"ekf", "rough"}) {
+    const auto& of_method = json["methods"][method];
+    EXPECT_EQ(of_method["outages"], 6) << method;
+    EXPECT_GT(of_method["horizontal_rmse_m"], 0.01);
+    EXPECT_LT(of_method["horizontal_rmse_m"], 20);
+    EXPECT_GT(of_method["vertical_rmse_m"], 0);
+    EXPECT_GT(of_method["cpu_s"], 0);
+    EXPECT_LE(of_method["horizontal_m"]["rms"]["low"], of_method["horizontal_rmse_m"]);
+    EXPECT_TRUE(of_method["horizontal_rms_m_after_s"].contains("20"));
+    EXPECT_FALSE(of_method["horizontal_rms_m_after_s"].contains("30"));
+  }
+  EXPECT_EQ(json["comparisons"][0]["base"], "ekf");
+  EXPECT_EQ(json["comparisons"][0]["other"], "rough");
+  EXPECT_EQ(json["config"], labels.config);
+  EXPECT_TRUE(json.contains("version"));
+
+  for (const char* name : {"tables/table_iii.csv", "tables/table_iii.md", "tables/table_iv.csv",
+                           "tables/table_iv.md", "tables/statistics.csv", "config.yaml"}) {
+    EXPECT_FALSE(out.text(name).empty()) << name;
+  }
+  const test::Table drifts(out / "drift.csv");
+  EXPECT_THAT(drifts.column("length_s"), Each(20));
+  EXPECT_THAT(drifts.column("outage"), ElementsAre(1, 2, 3, 1, 2, 3, 1, 2, 3, 1, 2, 3));
+}
+
+/// The report's numbers are those of metrics.json.
+TEST_F(EvaluationTest, ReportHoldsAllFigures) {
+  const EvaluationSummary summary(results(2));
+  const reports::EvaluationReport report = evaluation_report(summary, {});
+  EXPECT_THAT(report.methods, ElementsAre("ekf", "rough"));
+  ASSERT_EQ(report.rms.size(), 2u);
+  EXPECT_DOUBLE_EQ(report.rms[0].horizontal_m.value,
+                   root_mean_square(summary.overall()[0].horizontal_max()));
+  ASSERT_EQ(report.cases.size(), 1u);
+  ASSERT_EQ(report.cases[0].methods.size(), 2u);
+  EXPECT_EQ(report.cases[0].methods[0].outages.size(), 6u);
+  ASSERT_EQ(report.timelines.size(), 1u);
+  EXPECT_EQ(report.timelines[0].outages.size(), 3u);
+  EXPECT_EQ(report.timelines[0].curves.size(), 2u);
+  ASSERT_EQ(report.maps.size(), 1u);
+  EXPECT_EQ(report.maps[0].estimates.size(), 2u);
+}
+
+TEST_F(EvaluationTest, AShortLogIsToldWhatToChange) {
+  Settings settings;  // the first outage ends after 570 s
+  Console console(true);
+  try {
+    evaluate(cross({log()}, {"ekf"}, settings), 1, console);
+    FAIL();
+  } catch (const DataError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("trip: no outage fits into its 300 s"));
+    EXPECT_THAT(error.what(), HasSubstr("outages.first_s"));
+  }
+}
+
+TEST(Cross, EveryMethodOnEveryLog) {
+  const std::vector<EvaluationCase> cases =
+      cross({"x/a.rawlog", "x/b.rawlog", "y/b.rawlog"}, {"ekf", "rough"}, Settings());
+  ASSERT_EQ(cases.size(), 6u);
+  EXPECT_EQ(cases[0].recording, "a");
+  EXPECT_EQ(cases[1].method, "rough");
+  EXPECT_EQ(cases[2].recording, "x/b.rawlog");
+  EXPECT_EQ(cases[4].recording, "y/b.rawlog");
+}
+
+TEST(Cross, NothingTwice) {
+  EXPECT_THROW(cross({"a.rawlog", "a.rawlog"}, {"ekf"}, Settings()), UsageError);
+  EXPECT_THROW(cross({"a.rawlog"}, {"ekf", "ekf"}, Settings()), UsageError);
+}
+
+TEST(ExperimentRuns, OneAShift) {
+  EvaluationCase c{"a.rawlog", "a", "ADIS16465", "ekf", "tuned ekf", Settings()};
+  const std::vector<ExperimentRun> runs = experiment_runs(c);
+  ASSERT_EQ(runs.size(), 2u);
+  EXPECT_EQ(runs[1].method, "tuned ekf");
+  EXPECT_EQ(runs[1].shift_s, 75);
+  EXPECT_EQ(*runs[1].schedule.first_end_s(), 645);
+  c.settings.outages.shifts_s.clear();
+  EXPECT_THROW(experiment_runs(c), UsageError);
+  c = {"a.rawlog", "a", "ADIS16465", "kalman", "", Settings()};
+  EXPECT_THROW(experiment_runs(c), UsageError);
+}
+
+TEST(ExperimentRuns, ErrorsOfTheEstimatorNameTheRecording) {
+  const EvaluationCase c{"a.rawlog", "a", "ADIS16465", "ekf", "", Settings()};
+  Sink sink;
+  const std::unique_ptr<Estimator> estimator = experiment_runs(c)[0].make_estimator({}, sink);
+  try {
+    estimator->finish();  // without a single measurement
+    FAIL();
+  } catch (const DataError& error) {
+    EXPECT_THAT(error.what(), testing::StartsWith("a: "));
+  }
+}
+
+}  // namespace
+}  // namespace foucault::app

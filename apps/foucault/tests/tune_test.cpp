@@ -1,0 +1,203 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "foucault/core/error.h"
+#include "simulation_job.h"
+#include "support/test_folder.h"
+#include "tune_job.h"
+
+namespace foucault::app {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+constexpr const char* kGrid = R"(# A comment with an umlaut: Gitter für rough
+base:
+  imu: {preset: ADIS16465}
+  outages:
+    first_s: 100
+    length_s: 20
+    period_s: 40
+    shifts_s: [0]
+grid:
+  imu.arw_deg_sqrt_h: [0.6, 0.15]
+  imu.gyro_bias_deg_h: {from: 2, to: 200, steps: 3, scale: log}
+method: ekf
+)";
+
+std::string with(std::string from, const std::string& to) {
+  std::string yaml = kGrid;
+  return yaml.replace(yaml.find(from), from.size(), to);
+}
+
+std::string refusal(const std::string& yaml, const std::vector<std::string>& set = {}) {
+  try {
+    load_tune_config_text(yaml, "grid.yaml", set);
+  } catch (const UsageError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(TuneConfig, ReadsBaseGridAndOptions) {
+  const TuneConfig config = load_tune_config_text(kGrid, "grid.yaml", {"outages.length_s=15"});
+  EXPECT_EQ(config.base.outages.first_s, 100);
+  EXPECT_EQ(config.base.outages.length_s, 15);
+  ASSERT_EQ(config.grid.axes.size(), 2u);
+  EXPECT_EQ(config.grid.axes[0].key, "imu.arw_deg_sqrt_h");
+  EXPECT_THAT(config.grid.axes[0].values, ElementsAre("0.15", "0.6"));
+  EXPECT_THAT(config.grid.axes[1].values, ElementsAre("2", "20", "200"));
+  EXPECT_THAT(config.options.methods_to_tune(), ElementsAre("ekf"));
+  const Settings at = config.at({1, 2});
+  EXPECT_EQ(*at.imu.arw_deg_sqrt_h, 0.6);
+  EXPECT_EQ(*at.imu.gyro_bias_deg_h, 200);
+  EXPECT_EQ(at.outages.first_s, 100);
+}
+
+TEST(TuneConfig, ErrorsNameTheLine) {
+  EXPECT_THAT(refusal(with("first_s: 100", "first: 100")),
+              HasSubstr("grid.yaml:5: outages.first: is not a key; did you mean outages.first_s"));
+  EXPECT_THAT(refusal(with("imu.arw_deg_sqrt_h:", "imu.arw:")), HasSubstr("grid.yaml:10: grid: "));
+  EXPECT_THAT(refusal(with("[0.6, 0.15]", "[0.6, -1]")),
+              HasSubstr("grid.yaml:10: grid: imu.arw_deg_sqrt_h: must be at least 0"));
+  EXPECT_THAT(refusal(with("[0.6, 0.15]", "[0.6, 0.6]")), HasSubstr("grid.yaml:10: "));
+  EXPECT_THAT(refusal(with("steps: 3", "step: 3")), HasSubstr("grid.yaml:11: grid: 'step'"));
+  EXPECT_THAT(refusal(with("from: 2", "from: -2")), HasSubstr("scale log needs"));
+  EXPECT_THAT(refusal(with("steps: 3", "steps: 1")), HasSubstr("steps is a whole number"));
+  EXPECT_THAT(refusal(with("method: ekf", "objectiv: vertical")),
+              HasSubstr("grid.yaml:12: objectiv: is not a key; did you mean objective"));
+  EXPECT_THAT(refusal(with("method: ekf", "method: kalman")), HasSubstr("unknown method"));
+  EXPECT_THAT(refusal(with("method: ekf", "")), HasSubstr("names no method"));
+  EXPECT_THAT(refusal("base: {}\nmethod: ekf\n"), HasSubstr("has no grid"));
+  EXPECT_THAT(refusal("{base: {}}"), HasSubstr("expects lines"));
+  EXPECT_THAT(refusal("grid: [\n"), HasSubstr("is not YAML"));
+  EXPECT_THAT(refusal(with("imu.arw_deg_sqrt_h:", "outages.length_s:")),
+              HasSubstr("outages are the same for all points"));
+  EXPECT_EQ(refusal(kGrid), "");
+}
+
+TEST(TuneOptions, Objectives) {
+  TuneOptions options;
+  EXPECT_EQ(options.objective_of(3, 2), 3);
+  options.objective = "vertical";
+  EXPECT_EQ(options.objective_of(3, 2), 2);
+  options.objective = "weighted";
+  options.vertical_weight = 0.5;
+  EXPECT_EQ(options.objective_of(3, 2), 4);
+}
+
+/// A search of six points on a log of 200 s.
+class TuneTest : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = new test::TestFolder;
+    Console console(true);
+    SimulationSettings trip;
+    trip.scenario.duration_s = 200;
+    trip.scenario.seed = 5;
+    write_simulation(trip, *folder_ / "trip.rawlog", console);
+  }
+  static void TearDownTestSuite() { delete folder_; }
+
+  static TuneJob job(const std::string& out, const std::string& yaml = kGrid) {
+    TuneJob job;
+    job.logs = {*folder_ / "trip.rawlog"};
+    job.config = load_tune_config_text(yaml, "grid.yaml", {});
+    job.out = out;
+    job.threads = 2;
+    job.report = false;
+    return job;
+  }
+
+  static test::TestFolder* folder_;
+};
+
+test::TestFolder* TuneTest::folder_ = nullptr;
+
+TEST_F(TuneTest, AKilledSearchEndsWithTheSameResult) {
+  const test::TestFolder out;
+  Console console(true);
+  tune(job(out / "a"), console);
+  const std::string points = out.text("a/points.csv");
+  const std::string results = out.text("a/results.csv");
+  EXPECT_EQ(std::count(results.begin(), results.end(), '\n'), 1 + 6);
+
+  std::filesystem::create_directory(out / "b");
+  out.write("b/points.csv", points.substr(0, points.size() - 10));  // in the middle of a line
+  TuneJob resumed = job(out / "b");
+  resumed.threads = 1;
+  tune(resumed, console);
+  for (const char* name : {"results.csv", "metrics.json", "best.yaml"}) {
+    EXPECT_EQ(out.text(std::string("b/") + name), out.text(std::string("a/") + name)) << name;
+  }
+  const std::string kept = points.substr(0, points.rfind('\n', points.size() - 2));
+  EXPECT_EQ(out.text("b/points.csv").substr(0, kept.size()), kept);
+}
+
+TEST_F(TuneTest, WritesTheBestOfThePoints) {
+  const test::TestFolder out;
+  Console console(true);
+  const std::vector<MethodTuning> tunings = search(job(out / "a"), console);
+  tune(job(out / "a"), console);
+  ASSERT_EQ(tunings.size(), 1u);
+  for (const auto& [point, score] : tunings[0].scores) {
+    EXPECT_EQ(score.outages, 3);
+    EXPECT_GE(score.horizontal_rms, tunings[0].search.value);
+  }
+  const auto json = nlohmann::json::parse(out.text("a/metrics.json"));
+  EXPECT_EQ(json["methods"]["ekf"]["horizontal_rmse_m"], tunings[0].search.value);
+  Settings best;
+  load_config_text(out.text("a/best.yaml"), "best.yaml", best);
+  EXPECT_EQ(best.imu.noise().gyro_noise_density,
+            job(out / "a").config.at(tunings[0].search.best).imu.noise().gyro_noise_density);
+  EXPECT_EQ(out.lines("a/heatmaps/ekf_imu_arw_deg_sqrt_h_imu_gyro_bias_deg_h.csv").size(), 7u);
+}
+
+TEST_F(TuneTest, RefusesPointsOfAnotherSearch) {
+  const test::TestFolder out;
+  Console console(true);
+  search(job(out / "a"), console);
+  const auto refused = [&](const std::string& yaml) -> std::string {
+    try {
+      search(job(out / "a", yaml), console);
+    } catch (const DataError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(refused(kGrid), "");
+  EXPECT_THAT(refused(with("0.15]", "0.15, 0.3]")), HasSubstr("with other grid"));
+  EXPECT_THAT(refused(with("length_s: 20", "length_s: 15")), HasSubstr("other base configuration"));
+  // The points stay good for another objective.
+  EXPECT_EQ(refused(with("method: ekf", "method: ekf\nobjective: vertical")), "");
+}
+
+TEST_F(TuneTest, CoarseToFineFindsTheBestOfTheGrid) {
+  const test::TestFolder out;
+  Console console(true);
+  const std::string grid = with("{from: 2, to: 200, steps: 3, scale: log}",
+                                "{from: 0.5, to: 500, steps: 13, scale: log}");
+  const std::string one = std::string(grid).replace(grid.find("[0.6, 0.15]"), 11, "[0.15]");
+  const std::vector<MethodTuning> full = search(job(out / "a", one), console);
+  const std::vector<MethodTuning> fast =
+      search(job(out / "b", one + "search: coarse_to_fine\n"), console);
+  EXPECT_EQ(fast[0].search.best, full[0].search.best);
+  EXPECT_LT(fast[0].search.evaluated.size(), full[0].search.evaluated.size());
+}
+
+TEST_F(TuneTest, ALogWithoutOutagesIsAnError) {
+  const test::TestFolder out;
+  Console console(true);
+  try {
+    search(job(out / "a", with("first_s: 100", "first_s: 900")), console);
+    FAIL();
+  } catch (const DataError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("no outage fits"));
+  }
+}
+
+}  // namespace
+}  // namespace foucault::app
