@@ -4,48 +4,109 @@
 #include <memory>
 
 #include "command.h"
+#include "demo_experiment.h"
+#include "evaluation_job.h"
+#include "evaluation_output.h"
+#include "evaluation_report.h"
+#include "foucault/evaluation/task_pool.h"
+#include "foucault/reports/report_page.h"
 #include "output_directory.h"
 #include "run_job.h"
-#include "simulation_job.h"
 
 namespace foucault::app {
 namespace {
 
-SimulationSettings demo_trip() {
-  SimulationSettings settings;
-  settings.imu.preset = "ADIS16465";
-  settings.scenario.name = "city";
-  settings.scenario.duration_s = 900;
-  settings.scenario.seed = 7;
-  return settings;
+struct DemoOptions {
+  bool full = false;
+  int jobs = processor_count();
+  std::string out = "foucault-demo";
+};
+
+DemoExperiment experiment_of(const DemoOptions& options) {
+  if (options.full) return {{2325, 1617, 2333}};
+  return {{1617}};
 }
 
-RunResult run_demo(const std::string& out, const std::string& command_line, Console& console) {
-  OutputDirectory directory(out);
-  const SimulationSettings trip = demo_trip();
-  RunJob job;
-  job.log = (directory.staging() / "trip.rawlog").string();
-  job.out = out;
-  job.settings.imu.preset = trip.imu.preset;
-  job.command_line = command_line;
-  console.say(fmt::format("simulating {:.0f} s of '{}' with an {}", trip.scenario.duration_s,
-                          trip.scenario.name, trip.imu.preset));
-  write_simulation(trip, job.log, console);
-  const RunResult result = run_into(job, directory.staging(), console);
+void say_all(const std::vector<std::string>& lines, Console& console) {
+  for (const std::string& line : lines) console.say(line);
+}
+
+void evaluate_into(const std::vector<EvaluationCase>& cases, const EvaluationLabels& labels,
+                   int jobs, const std::filesystem::path& folder, Console& console) {
+  const EvaluationSummary summary(evaluate(cases, jobs, console));
+  std::filesystem::create_directories(folder);
+  write_evaluation(summary, labels, folder);
+  console.progress("drawing", 0);
+  reports::write_report(reports::evaluation_page(evaluation_report(summary, labels)),
+                        (folder / "report").string());
+  console.say("");
+  console.say(labels.title);
+  say_all(evaluation_lines(summary), console);
+}
+
+void main_job(const DemoExperiment& experiment, const std::filesystem::path& recordings,
+              const std::filesystem::path& folder, Call& call) {
+  RunJob job = demo_run(experiment, recordings);
+  job.out = folder.string();
+  job.command_line = call.command_line;
+  std::filesystem::create_directories(folder);
+  const RunResult result = run_into(job, folder, call.console);
+  call.console.say(
+      fmt::format("One trip with an {} processed by refined", job.settings.imu.preset));
+  for (const std::string& line : summary_lines(result)) {
+    const bool names_staging = line.find(folder.string()) != std::string::npos;
+    if (!names_staging) call.console.say(line);
+  }
+}
+
+void run_demo(const DemoOptions& options, Call& call) {
+  OutputDirectory directory(options.out);
+  const std::filesystem::path folder = directory.staging();
+  const std::filesystem::path recordings = folder / "recordings";
+  const DemoExperiment experiment = experiment_of(options);
+
+  call.console.say(fmt::format("simulating {} recordings: {} trip{} with {} IMUs",
+                               experiment.trips_s.size() * demo_imus().size(),
+                               experiment.trips_s.size(), experiment.trips_s.size() == 1 ? "" : "s",
+                               demo_imus().size()));
+  write_demo_recordings(experiment, recordings, call.console);
+  main_job(experiment, recordings, folder / "trip", call);
+
+  EvaluationLabels labels;
+  labels.command_line = call.command_line;
+  labels.title = "The paper's experiment, noise as simulated";
+  labels.remarks = remarks_as_simulated();
+  evaluate_into(cases_as_simulated(experiment, recordings), labels, options.jobs, folder,
+                call.console);
+  labels.title = "The paper's experiment, noise tuned for each method";
+  labels.remarks = remarks_tuned();
+  evaluate_into(cases_tuned(experiment, recordings), labels, options.jobs, folder / "tuned",
+                call.console);
   directory.commit();
-  return result;
+
+  const std::filesystem::path out = options.out;
+  call.console.say("");
+  call.console.say(fmt::format("{:<10} {}", "written", options.out));
+  for (const char* page : {"report", "tuned/report", "trip/report"})
+    call.console.say(fmt::format("{:<10} {}", "report", (out / page / "index.html").string()));
 }
 
 }  // namespace
 
 std::function<void(Call&)> declare_demo(CLI::App& app) {
-  const auto out = std::make_shared<std::string>("foucault-demo");
-  app.add_option("--out", *out, "Folder for the recording, its solution and its report")
+  const auto o = std::make_shared<DemoOptions>();
+  app.add_flag("--full", o->full, "The paper's three trips, 2325, 1617 and 2333 s, instead of one");
+  app.add_option("--jobs", o->jobs, "Runs at the same time")
+      ->check(CLI::Range(1, 1024))
       ->capture_default_str();
-  return [out](Call& call) {
-    const RunResult result = run_demo(*out, call.command_line, call.console);
-    for (const std::string& line : summary_lines(result)) call.console.say(line);
-  };
+  app.add_option("--out", o->out, "Folder for recordings, solution, tables and reports")
+      ->capture_default_str();
+  app.footer(
+      "\nSimulates a car with the four IMUs of the paper, processes one trip from recording to\n"
+      "report (DIR/trip), then withholds GNSS for 60 s every 150 s and compares the drift of ekf,\n"
+      "refined and rough: Tables III and IV, with the noise that was simulated (DIR/report) and\n"
+      "with noise tuned for each method (DIR/tuned/report).");
+  return [o](Call& call) { run_demo(*o, call); };
 }
 
 }  // namespace foucault::app
