@@ -9,7 +9,7 @@ build_packages=(
   libmrpt-obs-dev libmrpt-topography-dev
   libceres-dev
   libopencv-dev libopencv-contrib-dev # contrib: freetype, for text in the figures
-  libcli11-dev nlohmann-json3-dev libfmt-dev libyaml-cpp-dev
+  libcli11-dev nlohmann-json3-dev libfmt-dev libyaml-cpp-dev zlib1g-dev
   fonts-dejavu-core
 )
 test_packages=(libgtest-dev libgmock-dev libgeographiclib-dev)

@@ -615,7 +615,7 @@ std::optional<Figure> data_health_figure(const RunData& data, const std::string&
     figure.panels.push_back(step_panel(data, data.imu_steps, "IMU interval", Ink::blue));
   }
   if (data.fix_steps.stamps() > 1) {
-    figure.panels.push_back(step_panel(data, data.fix_steps, "GNSS interval", Ink::blue));
+    figure.panels.push_back(step_panel(data, data.fix_steps, "Used-fix interval", Ink::blue));
   }
   if (!data.fix_types.empty()) {
     figure.panels.push_back(type_panel(data));
