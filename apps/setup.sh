@@ -74,7 +74,7 @@ fi
   fail "installing packages needs root: run this as root, or install sudo"
 
 echo "setup: installing ${missing[*]}"
-echo "setup: (about 350 MB on a bare system, two minutes on a fast line)"
+((${#missing[@]} < 5)) || echo "setup: (on a bare system 350 MB, two minutes on a fast line)"
 install_packages "${missing[@]}"
 mapfile -t missing < <(missing_of "${missing[@]}")
 [[ ${#missing[@]} == 0 ]] || fail "still missing after the installation: ${missing[*]}"
