@@ -53,6 +53,12 @@ std::vector<std::string> statistics_cells(const std::vector<double>& values) {
   return cells;
 }
 
+/// Two decimals, without a minus before zero.
+std::string hundredths(double value) {
+  const std::string text = fmt::format("{:.2f}", value);
+  return text == "-0.00" ? "0.00" : text;
+}
+
 /// Difference, percentage and its interval, a column an IMU.
 std::vector<std::vector<std::string>> difference_rows(const std::vector<MethodDrifts>& drifts,
                                                       const std::vector<std::string>& imus,
@@ -69,9 +75,10 @@ std::vector<std::vector<std::string>> difference_rows(const std::vector<MethodDr
       continue;
     }
     const PairedComparison c = compare_paired(a->horizontal_max, b->horizontal_max);
-    rows[0].push_back(fmt::format("{:.2f}", c.rms_difference.value));
-    rows[1].push_back(fmt::format("{:.2f}", 100 * c.relative.value));
-    rows[2].push_back(fmt::format("[{:.2f}, {:.2f}]", 100 * c.relative.low, 100 * c.relative.high));
+    rows[0].push_back(hundredths(c.rms_difference.value));
+    rows[1].push_back(hundredths(100 * c.relative.value));
+    rows[2].push_back(fmt::format("[{}, {}]", hundredths(100 * c.relative.low),
+                                  hundredths(100 * c.relative.high)));
   }
   return rows;
 }

@@ -32,6 +32,13 @@ TEST(DriftTable, DifferencesHaveTheFormOfTableFour) {
             "95 % interval (%),\"[100.00, 100.00]\",-\n");
 }
 
+TEST(DriftTable, ATinyDifferenceHasNoSign) {
+  const TextTable table = drift_difference_table(
+      {{"A", "ekf", {3, 4}, {1, 1}}, {"A", "full", {3, 3.9999}, {1, 1}}}, "ekf");
+  EXPECT_EQ(table.rows[0][1], "0.00");
+  EXPECT_EQ(table.rows[1][1], "0.00");
+}
+
 TEST(DriftTable, PlainTextIsInLine) {
   EXPECT_EQ(to_plain_text({"Title", {"IMU", "a", "long"}, {{"ADIS", "1.25", "-"}}}),
             "Title\n"
