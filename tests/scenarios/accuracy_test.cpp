@@ -168,7 +168,7 @@ INSTANTIATE_TEST_SUITE_P(All, Troubles,
                                            Trouble{"off_the_second", off_the_second()},
                                            Trouble{"imu_gap", imu_gap()},
                                            Trouble{"degraded_gnss", degraded_gnss()}),
-                         [](const auto& info) { return info.param.name; });
+                         [](const auto& trouble) { return trouble.param.name; });
 
 TEST_P(Troubles, NoMethodDiverges) {
   for (const char* method : {"ekf", "refined"}) {

@@ -77,14 +77,25 @@ NodeState to_node(const Epoch& epoch, const LocalFrame& frame) {
   return x;
 }
 
+/// The part of a rotation that turns about the vertical.
+Eigen::Quaterniond heading_part(const Eigen::Matrix3d& R) {
+  const Eigen::Quaterniond q(R);
+  return Eigen::Quaterniond(q.w(), 0, 0, q.z()).normalized();
+}
+
+/// A model whose gravity is constant in w levels its attitude by the accelerometers, which feel the
+/// gravity of the place: what it calls the vertical of w is the local vertical. Its attitude is
+/// turned by the convergence of the meridians alone, or the curvature would count twice.
 Epoch to_epoch(int64_t t_ns, const NodeState& x, const Matrix15d& covariance_w,
-               const LocalFrame& frame) {
+               const LocalFrame& frame, bool constant_gravity) {
   Epoch epoch;
   epoch.t_ns = t_ns;
   epoch.position = frame.to_geodetic(x.p_w_b);
   const Eigen::Matrix3d R_n_w = frame.R_w_n(epoch.position).transpose();
   epoch.velocity_n = R_n_w * x.v_w_b;
-  epoch.q_n_b = (Eigen::Quaterniond(R_n_w) * x.q_w_b).normalized();
+  const Eigen::Quaterniond q_n_w =
+      constant_gravity ? heading_part(R_n_w) : Eigen::Quaterniond(R_n_w);
+  epoch.q_n_b = (q_n_w * x.q_w_b).normalized();
   epoch.bias = x.bias;
   epoch.covariance = turned(covariance_w, R_n_w);
   return epoch;
@@ -164,7 +175,8 @@ void WindowNavigator::hold() {
 
 Epoch WindowNavigator::epoch() const {
   const Prediction now = prediction();
-  return to_epoch(integrator_->t_end_ns(), now.x, now.covariance, *frame_);
+  return to_epoch(integrator_->t_end_ns(), now.x, now.covariance, *frame_,
+                  model_ != PreintegrationModel::full);
 }
 
 void WindowNavigator::add_node() {
