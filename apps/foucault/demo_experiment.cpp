@@ -27,11 +27,11 @@ struct TunedNoise {
 };
 constexpr TunedNoise kTuned[] = {
     {"ICM20602", "ekf", 10, 0.25},       {"ICM20602", "refined", 10, 0.25},
-    {"ICM20602", "rough", 50, 0.25},     {"ADIS16460", "ekf", 10, 0.15},
-    {"ADIS16460", "refined", 10, 0.15},  {"ADIS16460", "rough", 50, 0.15},
+    {"ICM20602", "rough", 150, 0.25},    {"ADIS16460", "ekf", 10, 0.15},
+    {"ADIS16460", "refined", 10, 0.15},  {"ADIS16460", "rough", 150, 0.15},
     {"ADIS16465", "ekf", 2, 0.15},       {"ADIS16465", "refined", 2, 0.15},
-    {"ADIS16465", "rough", 50, 0.15},    {"HGuide-i300", "ekf", 2, 0.15},
-    {"HGuide-i300", "refined", 2, 0.15}, {"HGuide-i300", "rough", 50, 0.15},
+    {"ADIS16465", "rough", 150, 0.15},   {"HGuide-i300", "ekf", 2, 0.15},
+    {"HGuide-i300", "refined", 2, 0.15}, {"HGuide-i300", "rough", 150, 0.15},
 };
 
 std::string recording_name(const std::string& imu, double length_s) {
