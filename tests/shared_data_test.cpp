@@ -17,6 +17,8 @@ using nlohmann::json;
 class SharedData : public testing::Test {
  protected:
   void SetUp() override {
+    // Not in the repository for their size and licences; the end-to-end tests and the scenarios
+    // prove the same behaviour on simulated trips.
     const std::optional<std::filesystem::path> data = shared_data();
     if (!data) GTEST_SKIP() << "no recordings: neither $FOUCAULT_DATA_DIR nor ../shared/data";
     data_ = *data;

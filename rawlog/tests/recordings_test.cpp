@@ -28,6 +28,8 @@ std::string data_dir() {
 class Recordings : public ::testing::Test {
  protected:
   void SetUp() override {
+    // Not in the repository for their size and licences; import_test.cpp proves the importers on
+    // files it writes.
     if (std::filesystem::exists(data_dir())) return;
     GTEST_SKIP() << "no recordings in " << data_dir() << "; set FOUCAULT_DATA_DIR";
   }

@@ -20,10 +20,6 @@ Matrix3d cross(const Vector3d& v, const Matrix3d& M) {
   return out;
 }
 
-/// The weight that makes the previous increment of length h1 stand for one of length h2 in (15)
-/// and (18): rates linear in time give the 1/12 terms times 2 h2^2 / (h1 (h1 + h2)).
-double previous_weight(double h1, double h2) { return 2 * h2 * h2 / (h1 * (h1 + h2)); }
-
 }  // namespace
 
 Preintegrator::Blocks::Blocks() {
@@ -46,7 +42,7 @@ void Preintegrator::add(const ImuIncrement& increment) {
   Vector3d previous_dtheta = Vector3d::Zero();
   Vector3d previous_dvel = Vector3d::Zero();
   if (previous_) {
-    const double weight = previous_weight(previous_->dt(), dt);
+    const double weight = previous_increment_scale(previous_->dt(), dt);
     previous_dtheta = weight * (previous_->dtheta_b - m_.bias.gyro * previous_->dt());
     previous_dvel = weight * (previous_->dvel_b - m_.bias.accel * previous_->dt());
   }
