@@ -146,7 +146,7 @@ Panel curve_panel(const MethodCurves& curves, const MethodOrder& order, Componen
   panel.y.min = 0;
   panel.y.max = top > 0 ? 1.06 * top : 1;
   panel.legend = LegendPlace::none;
-  panel.note = fmt::format("RMS {} m", significant_text(maximum_rms(curves, maximum)));
+  panel.note = fmt::format("{} m", significant_text(maximum_rms(curves, maximum)));
   panel.series = {all_curves(curves, component, rms.ink), rms};
   return panel;
 }
@@ -182,6 +182,10 @@ Figure drift_curves(const DriftCase& drift_case, const MethodOrder& order) {
   for (const MethodCurves& curves : drift_case.methods) {
     figure.panels.push_back(curve_panel(curves, order, &OutageCurve::vertical_m,
                                         &OutageCurve::max_vertical_m, "Vertical", top_vertical));
+  }
+  // Beside the titles of more than four panels there is no room for the word.
+  if (drift_case.methods.size() <= 4) {
+    for (Panel& panel : figure.panels) panel.note = "RMS " + panel.note;
   }
   return figure;
 }
