@@ -64,7 +64,7 @@ esac
 command -v dpkg-query >/dev/null && command -v apt-get >/dev/null ||
   fail "this is not a Debian system; install by hand what stands for: ${packages[*]}"
 
-mapfile -t missing < <(missing_of "${packages[@]}")
+missing=($(missing_of "${packages[@]}")) # not mapfile: a chroot without /proc has no /dev/fd
 if [[ ${#missing[@]} == 0 ]]; then
   echo "setup: all ${#packages[@]} packages are there"
   exit 0
@@ -76,6 +76,6 @@ fi
 echo "setup: installing ${missing[*]}"
 ((${#missing[@]} < 5)) || echo "setup: (on a bare system 350 MB, two minutes on a fast line)"
 install_packages "${missing[@]}"
-mapfile -t missing < <(missing_of "${missing[@]}")
+missing=($(missing_of "${missing[@]}")) # not mapfile: a chroot without /proc has no /dev/fd
 [[ ${#missing[@]} == 0 ]] || fail "still missing after the installation: ${missing[*]}"
 echo "setup: done"
