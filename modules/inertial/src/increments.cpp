@@ -107,7 +107,7 @@ Eigen::Vector3d rotation_with_coning(const Eigen::Vector3d& previous_dtheta,
 Eigen::Vector3d velocity_with_sculling(const Eigen::Vector3d& previous_dtheta,
                                        const Eigen::Vector3d& previous_dvel,
                                        const Eigen::Vector3d& dtheta, const Eigen::Vector3d& dvel) {
-  return dvel + 0.5 * dtheta.cross(dvel) +
+  return dvel + dtheta.cross(0.5 * dvel + dtheta.cross(dvel) / 6) +
          (previous_dtheta.cross(dvel) + previous_dvel.cross(dtheta)) / 12;
 }
 

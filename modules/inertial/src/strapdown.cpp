@@ -22,11 +22,8 @@ SensedMotion sensed_motion(const ImuIncrement& previous, const ImuIncrement& inc
   const Eigen::Vector3d previous_dvel = scale * previous.dvel_b;
   const Eigen::Vector3d& dtheta = increment.dtheta_b;
   const Eigen::Vector3d& dvel = increment.dvel_b;
-  // The last term is the next one of the rotation series. In a long turn at 30 deg/s and 200 Hz it
-  // is 4 um/s^2, 1 cm in 60 s.
   return {rotation_with_coning(previous_dtheta, dtheta),
-          velocity_with_sculling(previous_dtheta, previous_dvel, dtheta, dvel) +
-              dtheta.cross(dtheta.cross(dvel)) / 6};
+          velocity_with_sculling(previous_dtheta, previous_dvel, dtheta, dvel)};
 }
 
 }  // namespace

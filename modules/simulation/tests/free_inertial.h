@@ -114,11 +114,8 @@ class Strapdown : public FreeInertial {
   void step(const ImuIncrement& previous, const ImuIncrement& current) {
     const double dt = current.dt();
     const Eigen::Vector3d turn = rotation_with_coning(previous.dtheta_b, current.dtheta_b);
-    // The last term continues the rotation series of paper (18); without it a city closes to
-    // 0.3 mm only.
     const Eigen::Vector3d dv_b = velocity_with_sculling(previous.dtheta_b, previous.dvel_b,
-                                                        current.dtheta_b, current.dvel_b) +
-                                 current.dtheta_b.cross(current.dtheta_b.cross(current.dvel_b)) / 6;
+                                                        current.dtheta_b, current.dvel_b);
     const Eigen::Quaterniond half_earth = so3::exp(-earth_.rate_e * (dt / 2));
     const Eigen::Vector3d dv_f = half_earth * (q_ * dv_b);
     const Eigen::Vector3d coasting = gravity(offset_) - 2 * earth_.rate_e.cross(v_);

@@ -51,7 +51,9 @@ Eigen::Vector3d rotation_with_coning(const Eigen::Vector3d& previous_dtheta,
                                      const Eigen::Vector3d& dtheta);
 
 /// Velocity increment in the body frame at the beginning of the increment: rotation and sculling
-/// terms, paper (18). It takes the two as equally long; see previous_increment_scale().
+/// terms, paper (18), and the next term of the rotation, theta x (theta x dv) / 6: in a long turn
+/// at 30 deg/s and 200 Hz 4 um/s^2, 1 cm in 60 s. It takes the two as equally long; see
+/// previous_increment_scale().
 Eigen::Vector3d velocity_with_sculling(const Eigen::Vector3d& previous_dtheta,
                                        const Eigen::Vector3d& previous_dvel,
                                        const Eigen::Vector3d& dtheta, const Eigen::Vector3d& dvel);
