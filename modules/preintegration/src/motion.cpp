@@ -27,16 +27,43 @@ Corrected correct(const Preintegration& pre, const ImuBias& bias) {
           pre.dv + pre.J_dv_bg * dg + pre.J_dv_ba * da, pre.dq * so3::exp(shift), shift};
 }
 
-/// What gravity does over T: velocity, position and the integral of position. Along the interval it
-/// changes by its gradient times the way, G v0 t.
+/// A bias of b0 at the beginning decays towards the one at which the interval was integrated.
+ImuBias expected_bias(const ImuBias& b0, const Preintegration& pre) {
+  ImuBias b1;
+  b1.gyro = pre.bias.gyro + pre.bias_decay * (b0.gyro - pre.bias.gyro);
+  b1.accel = pre.bias.accel + pre.bias_decay * (b0.accel - pre.bias.accel);
+  return b1;
+}
+
+/// n-th integral over T of Exp(w t) g, T^n sum (w T x)^k g / (k + n)!. Four terms: the next is
+/// (w T)^4 / 120 of the whole or less, (w T)^4 being 4e-10 for 60 s.
+template <int n>
+Vector3d turned_integral(const Vector3d& w, double T, const Vector3d& g) {
+  constexpr double kFactorial = n == 1 ? 1 : n == 2 ? 2 : n == 3 ? 6 : 24;
+  const Vector3d turn = w * T;
+  const Vector3d sum =
+      g + turn.cross(g + turn.cross(g + turn.cross(g) / (n + 3)) / (n + 2)) / (n + 1);
+  double power = 1;
+  for (int i = 0; i < n; ++i) power *= T;
+  return power / kFactorial * sum;
+}
+
+/// The motion over T seen from inertial space, without what the IMU measured. See motion.h.
 struct Fall {
-  Vector3d v, p, ip;
+  Vector3d g0;
+  Matrix3d gradient;  ///< G' = G + [w x]^2
+  Vector3d way;       ///< v0 T + S2 g0 + G' (v0 T^3/6 + g0 T^4/24)
+  Vector3d velocity;  ///< its derivative
   Fall(const NodeState& x0, const EarthModel& earth, double T) {
-    const Vector3d g = earth.gravity(x0.p_w_b);
-    const Vector3d g_dot = earth.gravity_gradient * x0.v_w_b;
-    v = T * g + T * T / 2 * g_dot;
-    p = T * T / 2 * g + T * T * T / 6 * g_dot;
-    ip = T * T * T / 6 * g;
+    const Vector3d& w = earth.omega_ie_w;
+    const Vector3d& v0 = x0.v_w_b;
+    g0 = earth.gravity(x0.p_w_b);
+    gradient = earth.gravity_gradient + w * w.transpose();
+    gradient.diagonal().array() -= w.squaredNorm();
+    way = T * v0 + turned_integral<2>(w, T, g0) +
+          gradient * (T * T * T / 6 * v0 + turned_integral<4>(w, T, g0));
+    velocity = v0 + turned_integral<1>(w, T, g0) +
+               gradient * (T * T / 2 * v0 + turned_integral<3>(w, T, g0));
   }
 };
 
@@ -44,39 +71,55 @@ struct Fall {
 struct Terms {
   Corrected z;
   Matrix3d R0t;
-  Vector3d a;          ///< Earth rate in b(t_{k-1})
-  Vector3d dv_shift;   ///< T dv - dp
-  Vector3d dp_shift;   ///< T dp - 2 idp
-  Vector3d p_seen;     ///< position row of (28) in b(t_{k-1})
-  Vector3d v_seen;     ///< velocity row of (25)
-  Quaterniond q_seen;  ///< (exp(-w T) q0)^-1 q1
+  Matrix3d turn;  ///< R0^T Exp(w T)
+  Fall fall;
+  Vector3d p_seen;     ///< R0^T (s(T) - way)
+  Vector3d v_seen;     ///< R0^T (s'(T) - velocity)
+  Quaterniond q_seen;  ///< q0^-1 Exp(w T) q1
   Vector15d r;
 };
 
 Terms evaluate(const NodeState& x0, const NodeState& x1, const Preintegration& pre,
                const EarthModel& earth) {
-  const double T = pre.dt;
   const Vector3d& w = earth.omega_ie_w;
-  Terms t;
-  t.z = correct(pre, x0.bias);
-  t.R0t = x0.q_w_b.toRotationMatrix().transpose();
-  t.a = t.R0t * w;
-  t.dv_shift = T * t.z.dv - t.z.dp;
-  t.dp_shift = T * t.z.dp - 2 * pre.idp;
+  const Quaterniond earth_turn = so3::exp(w * pre.dt);
+  const Matrix3d R0 = x0.q_w_b.toRotationMatrix();
+  Terms t{correct(pre, x0.bias), R0.transpose(), {}, Fall(x0, earth, pre.dt), {}, {}, {}, {}};
+  t.turn = t.R0t * earth_turn.toRotationMatrix();
 
   const Vector3d moved = x1.p_w_b - x0.p_w_b;
-  const Fall fall(x0, earth, T);
-  const Vector3d integral_moved = T * T / 2 * x0.v_w_b + fall.ip + t.R0t.transpose() * pre.idp;
-  t.p_seen = t.R0t * (moved - T * x0.v_w_b - fall.p + 2 * w.cross(integral_moved));
-  t.v_seen = t.R0t * (x1.v_w_b - x0.v_w_b - fall.v + 2 * w.cross(moved));
-  t.q_seen = x0.q_w_b.conjugate() * so3::exp(w * T) * x1.q_w_b;
+  t.p_seen = t.turn * moved - t.R0t * t.fall.way;
+  t.v_seen = t.turn * (x1.v_w_b + w.cross(moved)) - t.R0t * t.fall.velocity;
+  t.q_seen = x0.q_w_b.conjugate() * earth_turn * x1.q_w_b;
 
-  t.r.segment<3>(kPosition) = t.p_seen - (t.z.dp - t.a.cross(t.dp_shift));
-  t.r.segment<3>(kVelocity) = t.v_seen - (t.z.dv - t.a.cross(t.dv_shift));
+  t.r.segment<3>(kPosition) = t.p_seen - t.R0t * (t.fall.gradient * (R0 * pre.iidp)) - t.z.dp;
+  t.r.segment<3>(kVelocity) = t.v_seen - t.R0t * (t.fall.gradient * (R0 * pre.idp)) - t.z.dv;
   t.r.segment<3>(kAttitude) = so3::log(t.z.dq.conjugate() * t.q_seen);
-  t.r.segment<3>(kGyroBias) = x1.bias.gyro - x0.bias.gyro;
-  t.r.segment<3>(kAccelBias) = x1.bias.accel - x0.bias.accel;
+  const ImuBias expected = expected_bias(x0.bias, pre);
+  t.r.segment<3>(kGyroBias) = x1.bias.gyro - expected.gyro;
+  t.r.segment<3>(kAccelBias) = x1.bias.accel - expected.accel;
   return t;
+}
+
+/// Derivatives of way and velocity by p0, as far as g0 changes with it.
+struct FallByPosition {
+  Matrix3d way, velocity;
+};
+
+FallByPosition fall_by_position(const Fall& fall, const EarthModel& earth, double T) {
+  const Vector3d& w = earth.omega_ie_w;
+  FallByPosition d;
+  for (int i = 0; i < 3; ++i) {
+    const Vector3d g = earth.gravity_gradient.col(i);
+    d.way.col(i) = turned_integral<2>(w, T, g) + fall.gradient * turned_integral<4>(w, T, g);
+    d.velocity.col(i) = turned_integral<1>(w, T, g) + fall.gradient * turned_integral<3>(w, T, g);
+  }
+  return d;
+}
+
+/// d (R0^T M R0 x) / d dtheta0.
+Matrix3d conjugation_jacobian(const Matrix3d& R0t_M_R0, const Vector3d& x) {
+  return so3::skew(R0t_M_R0 * x) - R0t_M_R0 * so3::skew(x);
 }
 
 void set_block(Matrix15d& J, int row, int column, const Matrix3d& block) {
@@ -85,44 +128,43 @@ void set_block(Matrix15d& J, int row, int column, const Matrix3d& block) {
 
 Matrix15d jacobian_x0(const Terms& t, const Preintegration& pre, const EarthModel& earth) {
   const double T = pre.dt;
-  const Matrix3d A = so3::skew(t.a);
-  const Matrix3d R0t_W = A * t.R0t;  // R0^T [w x] = [a x] R0^T
-  const Matrix3d I_TA = Matrix3d::Identity() - T * A;
+  const Matrix3d turn_W = t.turn * so3::skew(earth.omega_ie_w);
+  const Matrix3d R0t_G = t.R0t * t.fall.gradient;
+  const Matrix3d gradient_b = R0t_G * t.R0t.transpose();
+  const FallByPosition fall = fall_by_position(t.fall, earth, T);
   const Vector3d r_q = t.r.segment<3>(kAttitude);
   const Matrix3d Jr_inverse = so3::right_jacobian_inverse(r_q);
   Matrix15d J = Matrix15d::Zero();
 
-  const Matrix3d R0t_G = t.R0t * earth.gravity_gradient;
-  const Matrix3d W_G = A * R0t_G;  // gravity in the Coriolis integral
-
-  set_block(J, kPosition, kPosition, -t.R0t - T * T / 2 * R0t_G + T * T * T / 3 * W_G);
-  set_block(J, kPosition, kVelocity, T * (T * R0t_W - t.R0t - T * T / 6 * R0t_G));
+  set_block(J, kPosition, kPosition, -t.turn - t.R0t * fall.way);
+  set_block(J, kPosition, kVelocity, -T * t.R0t - T * T * T / 6 * R0t_G);
   set_block(J, kPosition, kAttitude,
-            so3::skew(t.p_seen) - 2 * A * so3::skew(pre.idp) - so3::skew(t.dp_shift) * A);
-  set_block(J, kPosition, kGyroBias, -I_TA * pre.J_dp_bg);
-  set_block(J, kPosition, kAccelBias, -I_TA * pre.J_dp_ba);
+            so3::skew(t.p_seen) - conjugation_jacobian(gradient_b, pre.iidp));
+  set_block(J, kPosition, kGyroBias, -pre.J_dp_bg);
+  set_block(J, kPosition, kAccelBias, -pre.J_dp_ba);
 
-  set_block(J, kVelocity, kPosition, -2 * R0t_W - T * R0t_G);
+  set_block(J, kVelocity, kPosition, -turn_W - t.R0t * fall.velocity);
   set_block(J, kVelocity, kVelocity, -t.R0t - T * T / 2 * R0t_G);
-  set_block(J, kVelocity, kAttitude, so3::skew(t.v_seen) - so3::skew(t.dv_shift) * A);
-  set_block(J, kVelocity, kGyroBias, -I_TA * pre.J_dv_bg - A * pre.J_dp_bg);
-  set_block(J, kVelocity, kAccelBias, -I_TA * pre.J_dv_ba - A * pre.J_dp_ba);
+  set_block(J, kVelocity, kAttitude,
+            so3::skew(t.v_seen) - conjugation_jacobian(gradient_b, pre.idp));
+  set_block(J, kVelocity, kGyroBias, -pre.J_dv_bg);
+  set_block(J, kVelocity, kAccelBias, -pre.J_dv_ba);
 
   set_block(J, kAttitude, kAttitude, -Jr_inverse * t.q_seen.toRotationMatrix().transpose());
   set_block(J, kAttitude, kGyroBias,
             -Jr_inverse * so3::exp(r_q).toRotationMatrix().transpose() *
                 so3::right_jacobian(t.z.dq_shift) * pre.J_dq_bg);
 
-  set_block(J, kGyroBias, kGyroBias, -Matrix3d::Identity());
-  set_block(J, kAccelBias, kAccelBias, -Matrix3d::Identity());
+  set_block(J, kGyroBias, kGyroBias, -pre.bias_decay * Matrix3d::Identity());
+  set_block(J, kAccelBias, kAccelBias, -pre.bias_decay * Matrix3d::Identity());
   return J;
 }
 
-Matrix15d jacobian_x1(const Terms& t) {
+Matrix15d jacobian_x1(const Terms& t, const EarthModel& earth) {
   Matrix15d J = Matrix15d::Zero();
-  set_block(J, kPosition, kPosition, t.R0t);
-  set_block(J, kVelocity, kPosition, 2 * so3::skew(t.a) * t.R0t);
-  set_block(J, kVelocity, kVelocity, t.R0t);
+  set_block(J, kPosition, kPosition, t.turn);
+  set_block(J, kVelocity, kPosition, t.turn * so3::skew(earth.omega_ie_w));
+  set_block(J, kVelocity, kVelocity, t.turn);
   set_block(J, kAttitude, kAttitude, so3::right_jacobian_inverse(t.r.segment<3>(kAttitude)));
   set_block(J, kGyroBias, kGyroBias, Matrix3d::Identity());
   set_block(J, kAccelBias, kAccelBias, Matrix3d::Identity());
@@ -154,7 +196,7 @@ Vector15d boxminus(const NodeState& y, const NodeState& x) {
 MotionResidual motion_residual(const NodeState& x0, const NodeState& x1, const Preintegration& pre,
                                const EarthModel& earth) {
   const Terms t = evaluate(x0, x1, pre, earth);
-  return {t.r, jacobian_x0(t, pre, earth), jacobian_x1(t)};
+  return {t.r, jacobian_x0(t, pre, earth), jacobian_x1(t, earth)};
 }
 
 Vector15d motion_residual_value(const NodeState& x0, const NodeState& x1, const Preintegration& pre,
@@ -163,21 +205,20 @@ Vector15d motion_residual_value(const NodeState& x0, const NodeState& x1, const 
 }
 
 NodeState predict(const NodeState& x0, const Preintegration& pre, const EarthModel& earth) {
-  const double T = pre.dt;
   const Vector3d& w = earth.omega_ie_w;
   const Corrected z = correct(pre, x0.bias);
-  const Vector3d a = x0.q_w_b.conjugate() * w;
-  const Vector3d dp = z.dp - a.cross(T * z.dp - 2 * pre.idp);
-  const Vector3d dv = z.dv - a.cross(T * z.dv - z.dp);
-  const Fall fall(x0, earth, T);
-  const Vector3d integral_moved = T * T / 2 * x0.v_w_b + fall.ip + x0.q_w_b * pre.idp;
+  const Matrix3d R0 = x0.q_w_b.toRotationMatrix();
+  const Fall fall(x0, earth, pre.dt);
+  const Vector3d way = fall.way + R0 * z.dp + fall.gradient * (R0 * pre.iidp);
+  const Vector3d velocity = fall.velocity + R0 * z.dv + fall.gradient * (R0 * pre.idp);
+  const Quaterniond back = so3::exp(-w * pre.dt);
 
   NodeState x1;
-  const Vector3d moved = T * x0.v_w_b + fall.p + x0.q_w_b * dp - 2 * w.cross(integral_moved);
+  const Vector3d moved = back * way;
   x1.p_w_b = x0.p_w_b + moved;
-  x1.v_w_b = x0.v_w_b + fall.v + x0.q_w_b * dv - 2 * w.cross(moved);
-  x1.q_w_b = (so3::exp(-w * T) * x0.q_w_b * z.dq).normalized();
-  x1.bias = x0.bias;
+  x1.v_w_b = back * velocity - w.cross(moved);
+  x1.q_w_b = (back * x0.q_w_b * z.dq).normalized();
+  x1.bias = expected_bias(x0.bias, pre);
   return x1;
 }
 

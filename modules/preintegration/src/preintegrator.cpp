@@ -53,6 +53,7 @@ void Preintegrator::add(const ImuIncrement& increment) {
 
   propagate_errors(increment, C_, C_next, y);
 
+  m_.iidp += dt * (m_.idp + dt * (m_.dp / 2 + dt * (m_.dv / 6 + y / 24)));
   m_.idp += dt * (m_.dp + dt * (m_.dv / 2 + y / 6));
   m_.dp += dt * (m_.dv + y / 2);
   m_.dv += y;
@@ -179,6 +180,12 @@ Preintegration Preintegrator::result() const {
   S.block<3, 3>(kAttitude, kAttitude) = Ct * s.ee * C_;
   S.block<3, 3>(kGyroBias, kGyroBias).diagonal().setConstant(s.gg);
   S.block<3, 3>(kAccelBias, kAccelBias).diagonal().setConstant(s.aa);
+  return out;
+}
+
+Preintegration Preintegrator::result_with_bias_decay() const {
+  Preintegration out = result();
+  out.bias_decay = std::exp(-out.dt / noise_.bias_tau);
   return out;
 }
 

@@ -10,7 +10,7 @@ namespace foucault {
 enum class PreintegrationModel {
   refined,  ///< paper section III (M1): Earth rate, gravity of the origin
   rough,    ///< M2: as refined with the Earth's rate zero: no Earth rotation, no Coriolis
-  full      ///< refined with the gravity vector of each interval's own place
+  full      ///< refined with the gravity vector of each interval's own place, and biases that decay
 };
 
 /// The Earth as an interval sees it, in w. Gravity at p is g_w + G (p - p_ref); with G zero it is

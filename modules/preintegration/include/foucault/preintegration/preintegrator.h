@@ -14,12 +14,10 @@ namespace foucault {
 ///
 /// Frame: everything is resolved in b_i(k-1), the body frame at t_begin held fixed in inertial
 /// space. The paper's (25) and (28) resolve in b_e(k-1), held fixed to the Earth, and so need the
-/// attitude at t_{k-1} while integrating. Both are the same motion: with a(s) the specific force
-/// in b_i, integration by parts gives
-///     integral of Exp(-w s) a ds = dv - w x (T dv - dp) + O(w^2 T^2 dv),
-///     double integral            = dp - w x (T dp - 2 idp) + O(w^2 T^2 dp),
-/// w the Earth rate in b(t_{k-1}). So the Earth's rotation is applied in the residual (motion.h),
-/// at whatever attitude the estimate has then, and never goes stale. (w T)^2 is 5e-9 at 1 s.
+/// attitude at t_{k-1} while integrating. Both are the same motion, seen from frames that turn
+/// against each other by the Earth's rotation; it is applied in the residual (motion.h), exactly
+/// and at whatever attitude the estimate has then, so that it never goes stale and nothing is to be
+/// integrated again when the attitude moves.
 ///
 /// Errors are true minus measured: p = dp + e_p, v = dv + e_v, q = dq * exp(e_theta).
 struct Preintegration {
@@ -29,8 +27,14 @@ struct Preintegration {
   Eigen::Quaterniond dq = Eigen::Quaterniond::Identity();  ///< b(t_end) to b_i; (21) with (15)
   Eigen::Vector3d dv = Eigen::Vector3d::Zero();            ///< integral of a [m/s]; (18)
   Eigen::Vector3d dp = Eigen::Vector3d::Zero();            ///< integral of dv [m]; (20)
-  Eigen::Vector3d idp = Eigen::Vector3d::Zero();           ///< integral of dp [m s]; for (29)
+  Eigen::Vector3d idp = Eigen::Vector3d::Zero();           ///< integral of dp [m s]
+  Eigen::Vector3d iidp = Eigen::Vector3d::Zero();          ///< integral of idp [m s^2]
   ImuBias bias;                                            ///< at which it was integrated; (37)
+  /// Share that is left at t_end of what the true bias at t_begin has beyond `bias`. 1 in (49);
+  /// exp(-T / tau) is the Gauss-Markov process (32) that the covariance takes. It is the deviation
+  /// from the estimate that decays, as in a Kalman filter, and not the estimate: most of it is the
+  /// turn-on bias, which stays.
+  double bias_decay = 1;
 
   /// Jacobians by the biases, (44): dp(bias + d) = dp + J_dp_bg d_g + J_dp_ba d_a, and so on;
   /// dq(bias + d) = dq * exp(J_dq_bg d_g).
@@ -60,8 +64,10 @@ class Preintegrator {
   /// Throws std::invalid_argument if it does not, or if it is empty.
   void add(const ImuIncrement& increment);
 
-  /// The measurement up to the last increment.
+  /// The measurement up to the last increment; bias_decay is 1.
   Preintegration result() const;
+  /// The same with the decay of the Gauss-Markov process.
+  Preintegration result_with_bias_decay() const;
 
   double dt() const { return m_.dt; }
   int64_t t_end_ns() const { return m_.t_end_ns; }
