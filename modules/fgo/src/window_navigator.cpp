@@ -135,6 +135,11 @@ void WindowNavigator::begin_interval() {
   integrator_.emplace(noise_, x.bias, nodes_.back().t_ns, open_.before);
 }
 
+Preintegration WindowNavigator::measured(const Preintegrator& integrator) const {
+  return model_ == PreintegrationModel::full ? integrator.result_with_bias_decay()
+                                             : integrator.result();
+}
+
 void WindowNavigator::propagate(const ImuIncrement& increment) {
   integrator_->add(increment);
   open_.increments.push_back(increment);
@@ -143,7 +148,7 @@ void WindowNavigator::propagate(const ImuIncrement& increment) {
 WindowNavigator::Prediction WindowNavigator::prediction() const {
   const NodeState x0 = last_state();
   if (at_node()) return {x0, covariance_};
-  const Preintegration pre = integrator_->result();
+  const Preintegration pre = measured(*integrator_);
   const NodeState x1 = predict(x0, pre, earth_);
   return {x1, predict_covariance(x0, x1, pre, earth_, covariance_)};
 }
@@ -180,7 +185,7 @@ Epoch WindowNavigator::epoch() const {
 }
 
 void WindowNavigator::add_node() {
-  const Preintegration pre = integrator_->result();
+  const Preintegration pre = measured(*integrator_);
   const NodeState x = predict(last_state(), pre, earth_);
   open_.factor = std::make_unique<PreintegrationFactor>(pre, earth_);
   double* const previous = nodes_.back().x.data();
@@ -223,7 +228,7 @@ bool WindowNavigator::reintegrate_moved_biases() {
     Preintegrator integrator(noise_, bias, pre.t_begin_ns, interval.before);
     for (const ImuIncrement& increment : interval.increments) integrator.add(increment);
     problem_->RemoveResidualBlock(interval.block);
-    interval.factor = std::make_unique<PreintegrationFactor>(integrator.result(), earth);
+    interval.factor = std::make_unique<PreintegrationFactor>(measured(integrator), earth);
     interval.block = problem_->AddResidualBlock(interval.factor.get(), nullptr, nodes_[i].x.data(),
                                                 nodes_[i + 1].x.data());
     nodes_[i + 1].forward.reset();

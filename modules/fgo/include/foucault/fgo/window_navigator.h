@@ -63,6 +63,7 @@ class WindowNavigator final : public Navigator {
   };
 
   void begin_interval();
+  Preintegration measured(const Preintegrator& integrator) const;
   void add_node();
   void solve();
   void optimize();
