@@ -17,6 +17,16 @@ constexpr double kEquatorGravity = 9.7803253359;    // gamma_e [m/s^2]
 constexpr double kSomigliana = 0.00193185265241;    // k
 constexpr double kGravityRatio = 0.00344978650684;  // m = omega^2 a^2 b / GM
 
+/// Somigliana's formula; s2 is sin^2 of the latitude.
+double gravity_on_ellipsoid(double s2) {
+  return kEquatorGravity * (1 + kSomigliana * s2) / std::sqrt(1 - kEccentricity2 * s2);
+}
+
+/// What gravity loses per h / a, in first order.
+double height_factor(double s2) {
+  return 2 * (1 + kFlattening + kGravityRatio - 2 * kFlattening * s2);
+}
+
 constexpr double kDegreesPerRadian = 57.29577951308232;
 
 /// Given to MRPT because its geodeticToGeocentric_WGS84 rounds the minor axis (52 um at the poles).
@@ -78,11 +88,22 @@ Eigen::Matrix3d R_e_n(double latitude, double longitude) {
 
 double normal_gravity(double latitude, double height) {
   const double s2 = std::sin(latitude) * std::sin(latitude);
-  const double on_ellipsoid =
-      kEquatorGravity * (1 + kSomigliana * s2) / std::sqrt(1 - kEccentricity2 * s2);
   const double h = height / kSemiMajorAxis;
-  return on_ellipsoid *
-         (1 - 2 * (1 + kFlattening + kGravityRatio - 2 * kFlattening * s2) * h + 3 * h * h);
+  return gravity_on_ellipsoid(s2) * (1 - height_factor(s2) * h + 3 * h * h);
+}
+
+GravitySlope normal_gravity_slope(double latitude, double height) {
+  const double s2 = std::sin(latitude) * std::sin(latitude);
+  const double h = height / kSemiMajorAxis;
+  const double on_ellipsoid = gravity_on_ellipsoid(s2);
+  // Logarithmic derivative of Somigliana's formula by s2, and that of the height's polynomial.
+  const double on_ellipsoid_by_s2 =
+      on_ellipsoid *
+      (kSomigliana / (1 + kSomigliana * s2) + 0.5 * kEccentricity2 / (1 - kEccentricity2 * s2));
+  const double by_s2 = on_ellipsoid_by_s2 * (1 - height_factor(s2) * h + 3 * h * h) +
+                       on_ellipsoid * 4 * kFlattening * h;
+  return {by_s2 * std::sin(2 * latitude),
+          on_ellipsoid * (6 * h - height_factor(s2)) / kSemiMajorAxis};
 }
 
 Eigen::Vector3d earth_rate_n(double latitude) {

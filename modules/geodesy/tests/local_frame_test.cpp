@@ -119,6 +119,23 @@ TEST(LocalFrame, GravityTurnsWithThePlace) {
   EXPECT_NEAR(lean, 0.157e-3, 0.001e-3);
 }
 
+TEST(LocalFrame, GravityGradientIsTheDerivativeOfGravity) {
+  const LocalFrame frame(degrees(30.5, 114.3, 23));
+  constexpr double kStep = 100;  // [m]
+  for (const Geodetic& place : {degrees(30.5, 114.3, 23), degrees(32, 117, 10000),
+                                degrees(-70, -120, 300), degrees(89, 10, 0)}) {
+    const Eigen::Vector3d p_w = frame.to_local(place);
+    Eigen::Matrix3d differences;
+    for (int i = 0; i < 3; ++i) {
+      const Eigen::Vector3d step = kStep * Eigen::Vector3d::Unit(i);
+      differences.col(i) =
+          (frame.gravity_w(p_w + step) - frame.gravity_w(p_w - step)) / (2 * kStep);
+    }
+    // Of 1.5e-6 / s^2; near the pole north turns, and the differences are of second order.
+    EXPECT_LT((frame.gravity_gradient_w(p_w) - differences).norm(), 1e-14);
+  }
+}
+
 TEST(LocalFrame, GravityVectorAgreesWithGeographicLib) {
   const Geodetic origin = degrees(30.5, 114.3, 23);
   const LocalFrame frame(origin);

@@ -32,6 +32,10 @@ class LocalFrame {
   /// of height, is left out.
   Eigen::Vector3d gravity_w(const Eigen::Vector3d& p_w) const;
 
+  /// Its derivative by p_w [1/s^2]: g/R diag(-1, -1, 2) on a sphere, here with the ellipsoid's
+  /// radii of curvature and normal gravity's change by latitude and height.
+  Eigen::Matrix3d gravity_gradient_w(const Eigen::Vector3d& p_w) const;
+
  private:
   Geodetic origin_;
   Eigen::Vector3d origin_e_;

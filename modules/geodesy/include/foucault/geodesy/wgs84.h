@@ -28,6 +28,13 @@ Eigen::Matrix3d R_e_n(double latitude, double longitude);
 /// second order in height (TR8350.2 (4-1), (4-3)). Good to 1e-7 m/s^2 at 1 km, 3e-6 at 20 km.
 double normal_gravity(double latitude, double height);
 
+/// Derivatives of normal_gravity.
+struct GravitySlope {
+  double by_latitude;  ///< [m/s^2/rad]
+  double by_height;    ///< [1/s^2]
+};
+GravitySlope normal_gravity_slope(double latitude, double height);
+
 /// omega_ie in n [rad/s]. Paper (10).
 Eigen::Vector3d earth_rate_n(double latitude);
 

@@ -27,10 +27,7 @@ struct EarthModel {
   }
 };
 
-/// For an interval that begins at p_w. In `full`, gravity is that of p_w and its gradient that of a
-/// sphere, g/R diag(-1, -1, 2) in the NED there: it serves over the way of one interval and the
-/// corrections of an estimate, where what it leaves out (flattening, 0.5 % of G) is below 1e-9 of
-/// g.
+/// For an interval that begins at p_w. In `full`, gravity and its gradient are those of p_w.
 EarthModel earth_model(PreintegrationModel model, const LocalFrame& frame,
                        const Eigen::Vector3d& p_w);
 
