@@ -48,8 +48,8 @@ std::unique_ptr<Estimator> make_ekf(const Settings& settings, const Mounting& mo
 std::unique_ptr<Estimator> make_rts(const Settings& settings, const Mounting& mounting,
                                     Sink& sink) {
   Aligner aligner(settings.alignment, settings.imu.noise(), mounting);
-  return std::make_unique<RtsSmoother>(settings.imu.noise(), settings.ekf, std::move(aligner),
-                                       run_options(settings), sink);
+  return make_rts_smoother(settings.imu.noise(), settings.ekf, std::move(aligner),
+                           run_options(settings), sink);
 }
 
 }  // namespace

@@ -130,10 +130,7 @@ void turn_attitude_to_body(const Eigen::Matrix3d& C0, const Eigen::Matrix3d& C1,
 
 FullState corrected(const FullState& state, const Vector& error) {
   FullState next = state;
-  const Place place(state.motion.position);
-  next.motion.position = displaced(state.motion.position, error.segment<3>(kPosition), place);
-  next.motion.v_n += error.segment<3>(kVelocity);
-  next.motion.q_n_b = (state.motion.q_n_b * so3::exp(error.segment<3>(kAttitude))).normalized();
+  next.motion = corrected(state.motion, error.head<9>());
   next.bias.gyro += error.segment<3>(kGyroBias);
   next.bias.accel += error.segment<3>(kAccelBias);
   if (error.size() == kSizeWithScale) {
@@ -145,10 +142,7 @@ FullState corrected(const FullState& state, const Vector& error) {
 
 Vector difference(const FullState& from, const FullState& to, int size) {
   Vector error(size);
-  error.segment<3>(kPosition) =
-      displacement_n(from.motion.position, to.motion.position, Place(from.motion.position));
-  error.segment<3>(kVelocity) = to.motion.v_n - from.motion.v_n;
-  error.segment<3>(kAttitude) = so3::log(from.motion.q_n_b.conjugate() * to.motion.q_n_b);
+  error.head<9>() = difference(from.motion, to.motion);
   error.segment<3>(kGyroBias) = to.bias.gyro - from.bias.gyro;
   error.segment<3>(kAccelBias) = to.bias.accel - from.bias.accel;
   if (size == kSizeWithScale) {

@@ -2,14 +2,8 @@
 
 #include <Eigen/Cholesky>
 
-#include "foucault/core/time.h"
-
 namespace foucault {
 namespace {
-
-using error_state::kAttitude;
-using error_state::kPosition;
-using error_state::kVelocity;
 
 /// State and covariance from all fixes, every component of the filter's.
 struct Smoothed {
@@ -35,37 +29,15 @@ SmoothedNode result_of(const RtsNode& node, const Smoothed& smoothed) {
           difference(node.filtered, smoothed.state, error_state::kSize)};
 }
 
-/// Value at s in [0, 1] between (a, slope a) and (b, slope b), slopes by s.
-Eigen::Vector3d hermite(double s, const Eigen::Vector3d& a, const Eigen::Vector3d& slope_a,
-                        const Eigen::Vector3d& b, const Eigen::Vector3d& slope_b) {
-  const double r = 1 - s;
-  return r * r * ((1 + 2 * s) * a + s * slope_a) + s * s * ((1 + 2 * r) * b - r * slope_b);
-}
-
-/// The error of the forward run between nodes. It is the error in n that changes smoothly.
-ekf::Vector error_between(double s, double length, const SmoothedNode& begin,
-                          const SmoothedNode& end, const Eigen::Quaterniond& q_n_b) {
-  const Vector15d& a = begin.after;
-  const Vector15d& b = end.before;
-  const Eigen::Vector3d attitude_n =
-      (1 - s) * (begin.state.motion.q_n_b * a.segment<3>(kAttitude)) +
-      s * (end.state.motion.q_n_b * b.segment<3>(kAttitude));
-  ekf::Vector error = (1 - s) * a + s * b;
-  error.segment<3>(kPosition) =
-      hermite(s, a.segment<3>(kPosition), length * a.segment<3>(kVelocity), b.segment<3>(kPosition),
-              length * b.segment<3>(kVelocity));
-  error.segment<3>(kAttitude) = q_n_b.conjugate() * attitude_n;
-  return error;
-}
-
-Epoch to_epoch(const ekf::FullState& state, const Matrix15d& covariance) {
+Epoch to_epoch(const SmoothedNode& node) {
+  const ekf::FullState& state = node.state;
   Epoch epoch;
   epoch.t_ns = state.motion.t_ns;
   epoch.position = state.motion.position;
   epoch.velocity_n = state.motion.v_n;
   epoch.q_n_b = state.motion.q_n_b;
   epoch.bias = state.bias;
-  epoch.covariance = covariance;
+  epoch.covariance = node.covariance;
   return epoch;
 }
 
@@ -81,20 +53,6 @@ std::vector<SmoothedNode> smooth(const std::vector<RtsNode>& nodes) {
     results[k] = result_of(nodes[k], smoothed);
   }
   return results;
-}
-
-Epoch to_epoch(const SmoothedNode& node) { return to_epoch(node.state, node.covariance); }
-
-Epoch between(const SmoothedNode& begin, const SmoothedNode& end, const StrapdownState& forward) {
-  const int64_t begin_ns = begin.state.motion.t_ns;
-  const double length = seconds_between(begin_ns, end.state.motion.t_ns);
-  const double s = seconds_between(begin_ns, forward.t_ns) / length;
-  ekf::FullState state;
-  state.motion = forward;
-  state = corrected(state, error_between(s, length, begin, end, forward.q_n_b));
-  state.bias.gyro = (1 - s) * begin.state.bias.gyro + s * end.state.bias.gyro;
-  state.bias.accel = (1 - s) * begin.state.bias.accel + s * end.state.bias.accel;
-  return to_epoch(state, (1 - s) * begin.covariance + s * end.covariance);
 }
 
 void RtsRecorder::start(const Epoch& initial) {
@@ -124,6 +82,15 @@ std::size_t RtsRecorder::mark() {
 
 bool RtsRecorder::at_node() const {
   return !nodes_.empty() && nodes_.back().filtered.motion.t_ns == state().motion.t_ns;
+}
+
+std::vector<SmoothedEpoch> RtsRecorder::smoothed() const {
+  const std::vector<SmoothedNode> nodes = smooth(nodes_);
+  std::vector<SmoothedEpoch> out;
+  out.reserve(nodes.size());
+  for (std::size_t k = 0; k < nodes.size(); ++k)
+    out.push_back({to_epoch(nodes[k]), nodes[k].before, nodes[k].after, nodes_[k].p_b_a});
+  return out;
 }
 
 void RtsRecorder::stepped(const ekf::Matrix& phi) { phi_ = (phi * phi_).eval(); }

@@ -186,8 +186,9 @@ Collected run_smoother(const ScenarioOptions& scenario, const ImuNoise& noise,
   Collected collected;
   SimulatedSource source(scenario, noise);
   Aligner aligner(given_alignment(source, scenario.start_ns()), noise, source.mounting());
-  RtsSmoother rts(noise, EkfOptions{}, std::move(aligner), options, collected);
-  feed(rts, source, scenario.start_ns());
+  const std::unique_ptr<Estimator> rts =
+      make_rts_smoother(noise, EkfOptions{}, std::move(aligner), options, collected);
+  feed(*rts, source, scenario.start_ns());
   return collected;
 }
 

@@ -58,6 +58,24 @@ Eigen::Vector3d displacement_n(const Geodetic& from, const Geodetic& to, const P
           d_longitude * place.radius_east * place.cos_latitude, from.height - to.height};
 }
 
+StrapdownState corrected(const StrapdownState& state, const Vector9d& error) {
+  using namespace error_state;
+  StrapdownState out = state;
+  out.position = displaced(state.position, error.segment<3>(kPosition), Place(state.position));
+  out.v_n += error.segment<3>(kVelocity);
+  out.q_n_b = (state.q_n_b * so3::exp(error.segment<3>(kAttitude))).normalized();
+  return out;
+}
+
+Vector9d difference(const StrapdownState& from, const StrapdownState& to) {
+  using namespace error_state;
+  Vector9d error;
+  error.segment<3>(kPosition) = displacement_n(from.position, to.position, Place(from.position));
+  error.segment<3>(kVelocity) = to.v_n - from.v_n;
+  error.segment<3>(kAttitude) = so3::log(from.q_n_b.conjugate() * to.q_n_b);
+  return error;
+}
+
 ImuIncrement without_bias(const ImuIncrement& increment, const ImuBias& bias) {
   ImuIncrement compensated = increment;
   compensated.dtheta_b -= bias.gyro * increment.dt();

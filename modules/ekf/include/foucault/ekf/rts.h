@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "foucault/ekf/ekf.h"
+#include "foucault/inertial/smoother.h"
 
 /// Rauch-Tung-Striebel smoothing of an EKF run.
 /// Source: Rauch, Tung, Striebel, AIAA Journal 3 (1965); in the error-state form of Shin (2005),
@@ -31,18 +32,10 @@ struct SmoothedNode {
 /// The backward pass. One result a node.
 std::vector<SmoothedNode> smooth(const std::vector<RtsNode>& nodes);
 
-Epoch to_epoch(const SmoothedNode& node);
-
-/// The smoothed solution between two neighbouring nodes, where the forward run had `forward`: the
-/// errors found after `begin` and before `end` are interpolated, that of the position to the third
-/// order with those of the velocity. With nodes a second apart it differs from that of a node there
-/// by millimetres after an outage of 60 s. The covariance is interpolated.
-Epoch between(const SmoothedNode& begin, const SmoothedNode& end, const StrapdownState& forward);
-
 /// The EKF, with a node left at the start and the end of a run, at every fix and hold, and wherever
 /// marked.
 /// Memory grows by about 6 kB a node, however many increments lie between.
-class RtsRecorder : public EkfNavigator {
+class RtsRecorder : public EkfNavigator, public Recording {
  public:
   using EkfNavigator::EkfNavigator;
 
@@ -50,11 +43,10 @@ class RtsRecorder : public EkfNavigator {
   void update(const GnssFix& fix) override;
   void hold() override { mark(); }
 
-  /// Makes sure that there is a node at the current time; gives its index.
-  std::size_t mark();
-  bool at_node() const;
-
-  const std::vector<RtsNode>& nodes() const { return nodes_; }
+  std::size_t mark() override;
+  bool at_node() const override;
+  std::size_t size() const override { return nodes_.size(); }
+  std::vector<SmoothedEpoch> smoothed() const override;
 
  protected:
   void stepped(const ekf::Matrix& phi) override;

@@ -11,7 +11,7 @@
 #include "foucault/fgo/chain.h"
 #include "foucault/fgo/fgo_options.h"
 #include "foucault/fgo/gnss_factor.h"
-#include "foucault/fgo/preintegration_factor.h"
+#include "foucault/fgo/imu_interval.h"
 #include "foucault/fgo/prior_factor.h"
 #include "foucault/fgo/state_block.h"
 #include "foucault/inertial/navigator.h"
@@ -50,11 +50,7 @@ class WindowNavigator final : public Navigator {
     std::vector<std::unique_ptr<GnssFactor>> fixes;
     std::optional<Forward> forward;
   };
-  /// Between a node and the next.
-  struct Interval {
-    std::vector<ImuIncrement> increments;  ///< kept to integrate again when the bias moves
-    std::optional<ImuIncrement> before;    ///< the increment before the first
-    std::unique_ptr<PreintegrationFactor> factor;
+  struct Interval : ImuInterval {
     ceres::ResidualBlockId block = nullptr;
   };
   struct Prediction {
@@ -63,16 +59,13 @@ class WindowNavigator final : public Navigator {
   };
 
   void begin_interval();
-  Preintegration measured(const Preintegrator& integrator) const;
   void add_node();
   void solve();
-  void optimize();
   bool reintegrate_moved_biases();
   void marginalize_old();
   void marginalize_first();
   void set_prior(const SquareRootPrior& prior);
   NodeInformation information(const Node& node) const;
-  double loss_weight(const GnssFactor::Linearized& fix) const;
   void update_covariance();
   Prediction prediction() const;
   NodeState last_state() const { return read_block(nodes_.back().x.data()); }

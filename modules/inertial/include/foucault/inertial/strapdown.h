@@ -47,6 +47,15 @@ Geodetic displaced(const Geodetic& position, const Eigen::Vector3d& d_n, const P
 /// Its inverse: north, east, down [m] from `from` to `to`, over +-180 deg if that is shorter.
 Eigen::Vector3d displacement_n(const Geodetic& from, const Geodetic& to, const Place& place);
 
+/// Position, velocity, attitude of an error state: the first nine of its rows.
+using Vector9d = Eigen::Matrix<double, 9, 1>;
+
+/// The state with an error put right: dp in metres along the ellipsoid, attitude on the right.
+StrapdownState corrected(const StrapdownState& state, const Vector9d& error);
+
+/// The error of which `to` is the corrected `from`, positions by the radii of `from`.
+Vector9d difference(const StrapdownState& from, const StrapdownState& to);
+
 /// The increment without the biases' share.
 ImuIncrement without_bias(const ImuIncrement& increment, const ImuBias& bias);
 

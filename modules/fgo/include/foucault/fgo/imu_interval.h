@@ -1,0 +1,31 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "foucault/fgo/preintegration_factor.h"
+
+namespace foucault {
+
+/// Between a node and the next: the factor, and what it was integrated from.
+struct ImuInterval {
+  std::vector<ImuIncrement> increments;  ///< kept to integrate again when the bias moves
+  std::optional<ImuIncrement> before;    ///< the increment before the first
+  std::unique_ptr<PreintegrationFactor> factor;
+};
+
+/// What the model takes from an integrator: in `full` the biases decay.
+Preintegration measured(const Preintegrator& integrator, PreintegrationModel model);
+
+/// A change of the gyro bias turns an interval by |dbg| T. Beyond this angle the second order of
+/// (46), g (|dbg| T)^2 T / 6, nears 1e-6 m/s, and the interval is to be integrated anew.
+constexpr double kReintegrationAngle = 1e-3;  // [rad]
+
+bool bias_moved(const Preintegration& pre, const ImuBias& bias);
+
+/// Integrates the interval again, at `bias`; there is a new factor then.
+void reintegrate(ImuInterval& interval, const ImuBias& bias, const ImuNoise& noise,
+                 PreintegrationModel model);
+
+}  // namespace foucault

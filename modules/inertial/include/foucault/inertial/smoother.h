@@ -1,0 +1,92 @@
+#pragma once
+
+#include <memory>
+#include <variant>
+#include <vector>
+
+#include "foucault/core/interfaces.h"
+#include "foucault/inertial/navigation_run.h"
+#include "foucault/inertial/strapdown.h"
+
+/// What smoothers share: a forward run that leaves nodes, and afterwards every epoch from all
+/// fixes.
+namespace foucault {
+
+/// The solution at a node from all fixes.
+struct SmoothedEpoch {
+  Epoch epoch;
+  /// The errors it found, in the order of error_state: in the forward run's state before the node's
+  /// fix, and after it; the same where there is none.
+  Vector15d before = Vector15d::Zero();
+  Vector15d after = Vector15d::Zero();
+  Eigen::Vector3d p_b_a = Eigen::Vector3d::Zero();  ///< lever arm of the node's last fix [m]
+};
+
+/// The smoothed solution between two neighbouring nodes, where the forward run had `forward`: the
+/// errors found after `begin` and before `end` are interpolated, that of the position to the third
+/// order with those of the velocity. With nodes a second apart it differs from that of a node there
+/// by millimetres after an outage of 60 s. The covariance is interpolated.
+Epoch between(const SmoothedEpoch& begin, const SmoothedEpoch& end, const StrapdownState& forward);
+
+/// A Navigator that leaves nodes on its way, for smoothing once the way is over.
+class Recording {
+ public:
+  virtual ~Recording() = default;
+
+  /// Makes sure that there is a node at the current time; gives its index.
+  virtual std::size_t mark() = 0;
+  virtual bool at_node() const = 0;
+  virtual std::size_t size() const = 0;
+
+  /// One a node, in order.
+  virtual std::vector<SmoothedEpoch> smoothed() const = 0;
+};
+
+/// Runs a recording navigator forward and gives out everything at finish(), epochs from all fixes.
+/// Innovations of fixes are those of the forward run, postfits those of the smoothed solution. With
+/// EpochRate::imu the epochs between nodes are interpolated, see between(); memory then grows by
+/// 200 bytes an epoch, else by what a node takes.
+class Smoother : public Estimator {
+ public:
+  /// `recording` is what `navigator` leaves; both live as long as this.
+  Smoother(std::unique_ptr<Navigator> navigator, Recording& recording, Aligner aligner,
+           const NavigationRunOptions& options, Sink& sink);
+
+  void process(const Measurement& measurement) override { run_.process(measurement); }
+  void finish() override;
+
+ private:
+  /// Keeps what the forward run gives out, in its order.
+  class Keeper : public Sink {
+   public:
+    Keeper(Recording& recording, EpochRate rate) : recording_(recording), rate_(rate) {}
+    void epoch(const Epoch& epoch) override;
+    void fix(const FixResult& result) override;
+    void notice(const Notice& notice) override;
+    /// Smooths, once the forward run is over.
+    void give_out(Sink& sink);
+
+   private:
+    struct NodeEpoch {
+      std::size_t node;
+    };
+    struct BetweenEpoch {
+      std::size_t node;  ///< the one before
+      StrapdownState forward;
+    };
+    struct NodeFix {
+      std::size_t node;
+      FixResult result;
+    };
+
+    Recording& recording_;
+    EpochRate rate_;
+    std::vector<std::variant<NodeEpoch, BetweenEpoch, NodeFix, FixResult, Notice>> kept_;
+  };
+
+  Keeper keeper_;
+  NavigationRun run_;
+  Sink& sink_;
+};
+
+}  // namespace foucault

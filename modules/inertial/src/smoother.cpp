@@ -1,0 +1,111 @@
+#include "foucault/inertial/smoother.h"
+
+#include "foucault/core/time.h"
+
+namespace foucault {
+namespace {
+
+using error_state::kAttitude;
+using error_state::kPosition;
+using error_state::kVelocity;
+
+template <class... F>
+struct Overloaded : F... {
+  using F::operator()...;
+};
+template <class... F>
+Overloaded(F...) -> Overloaded<F...>;
+
+/// Value at s in [0, 1] between (a, slope a) and (b, slope b), slopes by s.
+Eigen::Vector3d hermite(double s, const Eigen::Vector3d& a, const Eigen::Vector3d& slope_a,
+                        const Eigen::Vector3d& b, const Eigen::Vector3d& slope_b) {
+  const double r = 1 - s;
+  return r * r * ((1 + 2 * s) * a + s * slope_a) + s * s * ((1 + 2 * r) * b - r * slope_b);
+}
+
+/// The error of the forward run between nodes. It is the error in n that changes smoothly.
+Vector9d error_between(double s, double length, const SmoothedEpoch& begin,
+                       const SmoothedEpoch& end, const Eigen::Quaterniond& q_n_b) {
+  const Vector9d a = begin.after.head<9>();
+  const Vector9d b = end.before.head<9>();
+  const Eigen::Vector3d attitude_n = (1 - s) * (begin.epoch.q_n_b * a.segment<3>(kAttitude)) +
+                                     s * (end.epoch.q_n_b * b.segment<3>(kAttitude));
+  Vector9d error = (1 - s) * a + s * b;
+  error.segment<3>(kPosition) =
+      hermite(s, a.segment<3>(kPosition), length * a.segment<3>(kVelocity), b.segment<3>(kPosition),
+              length * b.segment<3>(kVelocity));
+  error.segment<3>(kAttitude) = q_n_b.conjugate() * attitude_n;
+  return error;
+}
+
+FixResult with_postfit(const FixResult& forward, const SmoothedEpoch& node) {
+  const Epoch& epoch = node.epoch;
+  FixResult result = forward;
+  result.postfit_n = displacement_n(epoch.position, result.antenna, Place(epoch.position)) -
+                     epoch.q_n_b * node.p_b_a;
+  return result;
+}
+
+}  // namespace
+
+Epoch between(const SmoothedEpoch& begin, const SmoothedEpoch& end, const StrapdownState& forward) {
+  const double length = seconds_between(begin.epoch.t_ns, end.epoch.t_ns);
+  const double s = seconds_between(begin.epoch.t_ns, forward.t_ns) / length;
+  const StrapdownState state =
+      corrected(forward, error_between(s, length, begin, end, forward.q_n_b));
+  Epoch epoch;
+  epoch.t_ns = forward.t_ns;
+  epoch.position = state.position;
+  epoch.velocity_n = state.v_n;
+  epoch.q_n_b = state.q_n_b;
+  epoch.bias.gyro = (1 - s) * begin.epoch.bias.gyro + s * end.epoch.bias.gyro;
+  epoch.bias.accel = (1 - s) * begin.epoch.bias.accel + s * end.epoch.bias.accel;
+  epoch.covariance = (1 - s) * begin.epoch.covariance + s * end.epoch.covariance;
+  return epoch;
+}
+
+void Smoother::Keeper::epoch(const Epoch& epoch) {
+  if (rate_ == EpochRate::imu && !recording_.at_node()) {
+    kept_.emplace_back(
+        BetweenEpoch{recording_.size() - 1,
+                     StrapdownState{epoch.t_ns, epoch.position, epoch.velocity_n, epoch.q_n_b}});
+  } else {
+    kept_.emplace_back(NodeEpoch{recording_.mark()});
+  }
+}
+
+void Smoother::Keeper::fix(const FixResult& result) {
+  if (result.verdict == FixVerdict::used) {
+    kept_.emplace_back(NodeFix{recording_.mark(), result});
+  } else {
+    kept_.emplace_back(result);
+  }
+}
+
+void Smoother::Keeper::notice(const Notice& notice) { kept_.emplace_back(notice); }
+
+void Smoother::Keeper::give_out(Sink& sink) {
+  recording_.mark();  // so that every epoch has a node after it
+  const std::vector<SmoothedEpoch> nodes = recording_.smoothed();
+  const auto give = Overloaded{
+      [&](const NodeEpoch& e) { sink.epoch(nodes[e.node].epoch); },
+      [&](const BetweenEpoch& e) {
+        sink.epoch(between(nodes[e.node], nodes[e.node + 1], e.forward));
+      },
+      [&](const NodeFix& f) { sink.fix(with_postfit(f.result, nodes[f.node])); },
+      [&](const FixResult& f) { sink.fix(f); }, [&](const Notice& n) { sink.notice(n); }};
+  for (const auto& kept : kept_) std::visit(give, kept);
+}
+
+Smoother::Smoother(std::unique_ptr<Navigator> navigator, Recording& recording, Aligner aligner,
+                   const NavigationRunOptions& options, Sink& sink)
+    : keeper_(recording, options.rate),
+      run_(std::move(navigator), std::move(aligner), options, keeper_),
+      sink_(sink) {}
+
+void Smoother::finish() {
+  run_.finish();
+  keeper_.give_out(sink_);
+}
+
+}  // namespace foucault
