@@ -123,7 +123,7 @@ TEST_F(Trip, RunWritesSolutionMetricsAndReport) {
 }
 
 TEST_F(Trip, EveryMethodRuns) {
-  for (const std::string method : {"ekf", "refined", "rough", "rts"}) {
+  for (const std::string method : {"ekf", "refined", "rough", "full", "rts", "batch"}) {
     const std::string out = folder_ / method;
     const Outcome run = foucault({"run", log_, "--method", method, "--no-report", "--out", out});
     ASSERT_EQ(run.exit_code, 0) << method << ": " << run.err;

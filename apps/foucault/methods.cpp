@@ -8,6 +8,7 @@
 #include "foucault/core/error.h"
 #include "foucault/ekf/ekf.h"
 #include "foucault/ekf/rts_smoother.h"
+#include "foucault/fgo/batch.h"
 #include "foucault/fgo/window_navigator.h"
 #include "foucault/inertial/navigation_run.h"
 
@@ -32,17 +33,23 @@ std::unique_ptr<Estimator> drive(std::unique_ptr<Navigator> navigator, const Set
                                          run_options(settings), sink);
 }
 
+std::unique_ptr<Navigator> window(PreintegrationModel model, const Settings& settings) {
+  return std::make_unique<WindowNavigator>(settings.fgo, model, settings.imu.noise());
+}
+
+std::unique_ptr<Navigator> filter(const Settings& settings) {
+  return std::make_unique<EkfNavigator>(settings.imu.noise(), settings.ekf);
+}
+
 template <PreintegrationModel model>
 std::unique_ptr<Estimator> make_window(const Settings& settings, const Mounting& mounting,
                                        Sink& sink) {
-  auto navigator = std::make_unique<WindowNavigator>(settings.fgo, model, settings.imu.noise());
-  return drive(std::move(navigator), settings, mounting, sink);
+  return drive(window(model, settings), settings, mounting, sink);
 }
 
 std::unique_ptr<Estimator> make_ekf(const Settings& settings, const Mounting& mounting,
                                     Sink& sink) {
-  auto navigator = std::make_unique<EkfNavigator>(settings.imu.noise(), settings.ekf);
-  return drive(std::move(navigator), settings, mounting, sink);
+  return drive(filter(settings), settings, mounting, sink);
 }
 
 std::unique_ptr<Estimator> make_rts(const Settings& settings, const Mounting& mounting,
@@ -50,6 +57,23 @@ std::unique_ptr<Estimator> make_rts(const Settings& settings, const Mounting& mo
   Aligner aligner(settings.alignment, settings.imu.noise(), mounting);
   return make_rts_smoother(settings.imu.noise(), settings.ekf, std::move(aligner),
                            run_options(settings), sink);
+}
+
+/// The forward run of a batch.
+std::unique_ptr<Navigator> first_estimate(const Settings& settings) {
+  const std::string& name = settings.batch.start;
+  if (name == "refined") return window(PreintegrationModel::refined, settings);
+  if (name == "rough") return window(PreintegrationModel::rough, settings);
+  if (name == "full") return window(PreintegrationModel::full, settings);
+  return filter(settings);
+}
+
+std::unique_ptr<Estimator> make_batch(const Settings& settings, const Mounting& mounting,
+                                      Sink& sink) {
+  Aligner aligner(settings.alignment, settings.imu.noise(), mounting);
+  return make_batch_smoother(first_estimate(settings), settings.fgo,
+                             settings.batch.preintegration_model(), settings.imu.noise(),
+                             std::move(aligner), run_options(settings), sink);
 }
 
 }  // namespace
@@ -64,6 +88,8 @@ const std::vector<Method>& methods() {
       {"full", "refined with the gravity vector of each place: exact over any distance",
        make_window<PreintegrationModel::full>},
       {"rts", "the filter forward, then a smoother backward: every epoch from all fixes", make_rts,
+       kForever},
+      {"batch", "one factor graph over the whole log: every epoch from all fixes", make_batch,
        kForever},
   };
   return all;

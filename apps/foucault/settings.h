@@ -5,6 +5,7 @@
 #include "foucault/core/config.h"
 #include "foucault/ekf/ekf.h"
 #include "foucault/evaluation/outage.h"
+#include "foucault/fgo/batch.h"
 #include "foucault/fgo/fgo_options.h"
 #include "foucault/inertial/alignment.h"
 #include "foucault/inertial/imu_noise.h"
@@ -31,6 +32,7 @@ class Settings : public Configurable {
   GnssOptions gnss;
   GapOptions gaps;
   FgoOptions fgo;
+  BatchOptions batch;
   EkfOptions ekf;
   RawlogOptions rawlog;
   OutageOptions outages;  ///< for evaluate and tune

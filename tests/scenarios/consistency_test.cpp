@@ -1,5 +1,5 @@
 /// Normalized estimation errors over seeded runs: trajectory, sensor errors, fixes and alignment
-/// are drawn anew for each, and the error at its end is measured by the covariance given with it.
+/// are drawn anew for each, and the error of one epoch is measured by the covariance given with it.
 
 #include <gtest/gtest.h>
 
@@ -7,10 +7,13 @@
 #include <string>
 
 #include "foucault/core/so3.h"
+#include "foucault/core/time.h"
 #include "foucault/ekf/ekf.h"
+#include "foucault/ekf/rts_smoother.h"
 #include "foucault/evaluation/reference_error.h"
 #include "foucault/evaluation/run_metrics.h"
 #include "foucault/evaluation/statistics.h"
+#include "foucault/fgo/batch.h"
 #include "foucault/fgo/window_navigator.h"
 #include "foucault/geodesy/local_frame.h"
 #include "foucault/inertial/navigation_run.h"
@@ -21,11 +24,21 @@ namespace {
 
 constexpr int kRuns = 50;
 
-/// Keeps the last epoch.
-class LastEpoch : public Sink {
+constexpr double kDuration = 160;
+/// Forward methods are asked at the end; a smoother has most to say before it.
+constexpr double kSmootherAsked = 110;
+
+/// Keeps the last epoch up to a stamp.
+class EpochAt : public Sink {
  public:
-  void epoch(const Epoch& epoch) override { last = epoch; }
+  explicit EpochAt(int64_t until_ns) : until_ns_(until_ns) {}
+  void epoch(const Epoch& epoch) override {
+    if (epoch.t_ns <= until_ns_) last = epoch;
+  }
   Epoch last;
+
+ private:
+  int64_t until_ns_;
 };
 
 struct NormalizedErrors {
@@ -36,7 +49,7 @@ Eigen::Matrix3d block(const Epoch& epoch, int row) {
   return epoch.covariance.block<3, 3>(row, row);
 }
 
-NormalizedErrors errors_at_the_end(const Epoch& estimate, const Epoch& truth) {
+NormalizedErrors normalized_errors(const Epoch& estimate, const Epoch& truth) {
   const Eigen::Vector3d attitude = so3::log(estimate.q_n_b.conjugate() * truth.q_n_b);
   const Eigen::Vector3d position = ned_offset(estimate.position, truth.position);
   const Eigen::Vector3d velocity = truth.velocity_n - estimate.velocity_n;
@@ -45,28 +58,38 @@ NormalizedErrors errors_at_the_end(const Epoch& estimate, const Epoch& truth) {
           normalized_square(attitude, block(estimate, error_state::kAttitude)).value()};
 }
 
-NormalizedErrors run(const std::string& method, int seed) {
-  const ImuNoise noise = imu_preset("ADIS16465");
-  ScenarioOptions scenario;
-  scenario.seed = seed;
-  scenario.duration_s = 160;
-  SimulatedSource source(scenario, noise);
-  std::unique_ptr<Navigator> navigator;
-  if (method == "ekf") {
-    navigator = std::make_unique<EkfNavigator>(noise, EkfOptions{});
-  } else {
+std::unique_ptr<Estimator> make_estimator(const std::string& method, const ImuNoise& noise,
+                                          const Mounting& mounting, Sink& sink) {
+  Aligner aligner(AlignmentOptions{}, noise, mounting);
+  if (method == "rts") return make_rts_smoother(noise, EkfOptions{}, std::move(aligner), {}, sink);
+  auto ekf = std::make_unique<EkfNavigator>(noise, EkfOptions{});
+  if (method == "batch")
+    return make_batch_smoother(std::move(ekf), FgoOptions{}, PreintegrationModel::full, noise,
+                               std::move(aligner), {}, sink);
+  std::unique_ptr<Navigator> navigator = std::move(ekf);
+  if (method == "full" || method == "refined") {
     const PreintegrationModel model =
         method == "full" ? PreintegrationModel::full : PreintegrationModel::refined;
     navigator = std::make_unique<WindowNavigator>(FgoOptions{}, model, noise);
   }
-  LastEpoch sink;
-  NavigationRun estimator(std::move(navigator),
-                          Aligner(AlignmentOptions{}, noise, source.mounting()),
-                          NavigationRunOptions{}, sink);
+  return std::make_unique<NavigationRun>(std::move(navigator), std::move(aligner),
+                                         NavigationRunOptions{}, sink);
+}
+
+NormalizedErrors run(const std::string& method, int seed) {
+  const ImuNoise noise = imu_preset("ADIS16465");
+  ScenarioOptions scenario;
+  scenario.seed = seed;
+  scenario.duration_s = kDuration;
+  SimulatedSource source(scenario, noise);
+  const bool smoother = method == "rts" || method == "batch";
+  EpochAt sink(scenario.start_ns() + nanoseconds(smoother ? kSmootherAsked : kDuration));
+  const std::unique_ptr<Estimator> estimator =
+      make_estimator(method, noise, source.mounting(), sink);
   while (const std::optional<Measurement> measurement = source.next())
-    estimator.process(*measurement);
-  estimator.finish();
-  return errors_at_the_end(sink.last, source.truth(sink.last.t_ns));
+    estimator->process(*measurement);
+  estimator->finish();
+  return normalized_errors(sink.last, source.truth(sink.last.t_ns));
 }
 
 NormalizedErrors mean_of_runs(const std::string& method) {
@@ -90,7 +113,8 @@ void expect_in_band(double nees) {
 }
 
 class Consistency : public ::testing::TestWithParam<const char*> {};
-INSTANTIATE_TEST_SUITE_P(Methods, Consistency, ::testing::Values("ekf", "refined", "full"));
+INSTANTIATE_TEST_SUITE_P(Methods, Consistency,
+                         ::testing::Values("ekf", "refined", "full", "rts", "batch"));
 
 TEST_P(Consistency, MeanNeesOfFiftyRunsLiesInItsBand) {
   const NormalizedErrors mean = mean_of_runs(GetParam());

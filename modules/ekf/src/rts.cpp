@@ -84,7 +84,7 @@ bool RtsRecorder::at_node() const {
   return !nodes_.empty() && nodes_.back().filtered.motion.t_ns == state().motion.t_ns;
 }
 
-std::vector<SmoothedEpoch> RtsRecorder::smoothed() const {
+std::vector<SmoothedEpoch> RtsRecorder::smoothed() {
   const std::vector<SmoothedNode> nodes = smooth(nodes_);
   std::vector<SmoothedEpoch> out;
   out.reserve(nodes.size());

@@ -46,7 +46,7 @@ class RtsRecorder : public EkfNavigator, public Recording {
   std::size_t mark() override;
   bool at_node() const override;
   std::size_t size() const override { return nodes_.size(); }
-  std::vector<SmoothedEpoch> smoothed() const override;
+  std::vector<SmoothedEpoch> smoothed() override;
 
  protected:
   void stepped(const ekf::Matrix& phi) override;

@@ -38,8 +38,8 @@ class Recording {
   virtual bool at_node() const = 0;
   virtual std::size_t size() const = 0;
 
-  /// One a node, in order.
-  virtual std::vector<SmoothedEpoch> smoothed() const = 0;
+  /// One a node, in order. Called once, at the end.
+  virtual std::vector<SmoothedEpoch> smoothed() = 0;
 };
 
 /// Runs a recording navigator forward and gives out everything at finish(), epochs from all fixes.

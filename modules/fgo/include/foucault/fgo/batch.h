@@ -1,0 +1,103 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "foucault/core/config.h"
+#include "foucault/fgo/fgo_options.h"
+#include "foucault/fgo/gnss_factor.h"
+#include "foucault/fgo/imu_interval.h"
+#include "foucault/fgo/prior_factor.h"
+#include "foucault/inertial/smoother.h"
+
+/// Smoothing by one optimization over a whole log: the cost (48) with every node in the window.
+namespace foucault {
+
+/// Section `batch` of the configuration.
+class BatchOptions : public Configurable {
+ public:
+  std::string model = "full";  ///< preintegration: refined | rough | full
+  std::string start = "ekf";   ///< forward method that gives the first estimate
+
+  void fields(ConfigFields& f) override;
+  PreintegrationModel preintegration_model() const;
+};
+
+/// A chain of nodes, each joined to the next by an interval: nodes.size() == intervals.size() + 1.
+struct BatchNode {
+  int64_t t_ns = 0;
+  NodeState x;  ///< first estimate
+  std::vector<LocalFix> fixes;
+};
+struct BatchChain {
+  SquareRootPrior prior;  ///< on the first node
+  std::vector<BatchNode> nodes;
+  std::vector<ImuInterval> intervals;
+};
+
+struct BatchSolution {
+  std::vector<NodeState> x;
+  std::vector<Matrix15d> covariance_w;  ///< of each node, from everything
+};
+
+/// Minimizes the cost by Ceres from the nodes' first estimates; intervals whose bias has moved are
+/// integrated again if their increments were kept. Time and memory are linear in the nodes: the
+/// covariances come from eliminating the chain from both ends, not from inverting it.
+/// Throws std::runtime_error if the problem cannot be solved.
+BatchSolution solve(BatchChain& chain, const FgoOptions& options, PreintegrationModel model,
+                    const ImuNoise& noise);
+
+/// Runs another navigator forward and leaves the chain of its way.
+/// A node stands at every fix, hold and mark, and the ends of a run; about 6 kB each. Increments
+/// are kept only while the bias is so uncertain that the interval may have to be integrated again.
+class BatchRecorder final : public Navigator, public Recording {
+ public:
+  BatchRecorder(std::unique_ptr<Navigator> forward, const FgoOptions& options,
+                PreintegrationModel model, const ImuNoise& noise);
+
+  void start(const Epoch& initial) override;
+  void propagate(const ImuIncrement& increment) override;
+  Innovation innovation(const GnssFix& fix) const override { return forward_->innovation(fix); }
+  void update(const GnssFix& fix) override;
+  void hold() override;
+  Epoch epoch() const override { return forward_->epoch(); }
+
+  std::size_t mark() override;
+  bool at_node() const override { return integrator_ && integrator_->dt() == 0; }
+  std::size_t size() const override { return passages_.size(); }
+  std::vector<SmoothedEpoch> smoothed() override;
+
+ private:
+  /// What the forward run had at a node.
+  struct Passage {
+    StrapdownState predicted, filtered;
+    ImuBias predicted_bias, filtered_bias;
+    Eigen::Vector3d p_b_a = Eigen::Vector3d::Zero();
+  };
+
+  void begin_interval(const Epoch& now);
+  void close_interval();
+  void add_node(const Epoch& now);
+  SmoothedEpoch smoothed_at(const Passage& passage, const Epoch& epoch) const;
+
+  std::unique_ptr<Navigator> forward_;
+  FgoOptions options_;
+  PreintegrationModel model_;
+  ImuNoise noise_;
+
+  std::optional<LocalFrame> frame_;          ///< at the first start
+  std::vector<BatchChain> chains_;           ///< one a start
+  std::vector<Passage> passages_;            ///< one a node, all chains
+  std::optional<Preintegrator> integrator_;  ///< from the newest node on
+  ImuInterval open_;
+  EarthModel earth_;
+};
+
+/// Method `batch`.
+std::unique_ptr<Estimator> make_batch_smoother(std::unique_ptr<Navigator> forward,
+                                               const FgoOptions& options, PreintegrationModel model,
+                                               const ImuNoise& noise, Aligner aligner,
+                                               const NavigationRunOptions& run_options, Sink& sink);
+
+}  // namespace foucault

@@ -1,0 +1,250 @@
+#include "foucault/fgo/batch.h"
+
+#include "foucault/fgo/chain.h"
+#include "node_epoch.h"
+#include "solving.h"
+
+namespace foucault {
+namespace {
+
+/// The chain as Ceres sees it.
+class BatchProblem {
+ public:
+  BatchProblem(BatchChain& chain, const FgoOptions& options)
+      : chain_(chain),
+        options_(options),
+        loss_(make_loss(options)),
+        prior_(chain.prior),
+        blocks_(chain.nodes.size()),
+        fixes_(chain.nodes.size()),
+        problem_(problem_options()) {
+    for (std::size_t k = 0; k < blocks_.size(); ++k) add_node(k);
+    problem_.AddResidualBlock(&prior_, nullptr, blocks_.front().data());
+    for (std::size_t k = 0; k < chain.intervals.size(); ++k) add_interval(k);
+  }
+
+  void optimize() { foucault::optimize(problem_, options_); }
+
+  /// True if there were any.
+  bool reintegrate_moved_biases(const ImuNoise& noise, PreintegrationModel model) {
+    bool moved = false;
+    for (std::size_t k = 0; k < chain_.intervals.size(); ++k) {
+      ImuInterval& interval = chain_.intervals[k];
+      const ImuBias bias = state(k).bias;
+      if (interval.increments.empty() || !bias_moved(interval.factor->preintegration(), bias))
+        continue;
+      problem_.RemoveResidualBlock(intervals_[k]);
+      reintegrate(interval, bias, noise, model);
+      intervals_[k] = join(k);
+      moved = true;
+    }
+    return moved;
+  }
+
+  NodeState state(std::size_t k) const { return read_block(blocks_[k].data()); }
+
+  /// What the node itself brings: its fixes, and the prior at the first.
+  NodeInformation own_information(std::size_t k) const {
+    NodeInformation out;
+    for (const std::unique_ptr<GnssFactor>& factor : fixes_[k]) {
+      const GnssFactor::Linearized fix = factor->linearize(state(k));
+      out.add(fix, loss_weight(loss_.get(), fix));
+    }
+    if (k == 0) out.add(prior_.linearize(state(0)));
+    return out;
+  }
+
+  /// The interval from node k to k + 1.
+  MotionResidual interval(std::size_t k) const {
+    return chain_.intervals[k].factor->linearize(state(k), state(k + 1));
+  }
+
+ private:
+  void add_node(std::size_t k) {
+    write_block(chain_.nodes[k].x, blocks_[k].data());
+    problem_.AddParameterBlock(blocks_[k].data(), kStateBlockSize, &manifold_);
+    for (const LocalFix& fix : chain_.nodes[k].fixes) {
+      fixes_[k].push_back(std::make_unique<GnssFactor>(fix));
+      problem_.AddResidualBlock(fixes_[k].back().get(), loss_.get(), blocks_[k].data());
+    }
+  }
+  void add_interval(std::size_t k) { intervals_.push_back(join(k)); }
+  ceres::ResidualBlockId join(std::size_t k) {
+    return problem_.AddResidualBlock(chain_.intervals[k].factor.get(), nullptr, blocks_[k].data(),
+                                     blocks_[k + 1].data());
+  }
+
+  BatchChain& chain_;
+  const FgoOptions& options_;
+  std::unique_ptr<ceres::LossFunction> loss_;
+  StateManifold manifold_;
+  PriorFactor prior_;
+  std::vector<StateBlock> blocks_;
+  std::vector<std::vector<std::unique_ptr<GnssFactor>>> fixes_;
+  std::vector<ceres::ResidualBlockId> intervals_;
+  ceres::Problem problem_;  ///< last: refers to the members above
+};
+
+MotionResidual reversed(const MotionResidual& interval) {
+  return {interval.r, interval.J_x1, interval.J_x0};
+}
+
+/// Information on every node from all before it and from all behind it; their sum's inverse.
+std::vector<Matrix15d> covariances(const BatchProblem& problem, std::size_t nodes) {
+  std::vector<Matrix15d> result(nodes);  // the information from before, until it is the covariance
+  NodeInformation from_before;
+  for (std::size_t k = 0; k < nodes; ++k) {
+    if (k > 0) from_before = eliminate(from_before, problem.interval(k - 1));
+    from_before.H += problem.own_information(k).H;
+    result[k] = from_before.H;
+  }
+  NodeInformation from_behind;
+  for (std::size_t k = nodes; k-- > 0;) {
+    NodeInformation all = from_behind;
+    all.H += result[k];
+    result[k] = covariance(all);
+    if (k == 0) break;
+    from_behind.H += problem.own_information(k).H;
+    from_behind = eliminate(from_behind, reversed(problem.interval(k - 1)));
+  }
+  return result;
+}
+
+}  // namespace
+
+void BatchOptions::fields(ConfigFields& f) {
+  f.text("model", model, {"full", "refined", "rough"}, "preintegration of method batch");
+  f.text("start", start, {"ekf", "full", "refined", "rough"},
+         "forward method that gives the batch its first estimate");
+}
+
+PreintegrationModel BatchOptions::preintegration_model() const {
+  if (model == "rough") return PreintegrationModel::rough;
+  return model == "refined" ? PreintegrationModel::refined : PreintegrationModel::full;
+}
+
+BatchSolution solve(BatchChain& chain, const FgoOptions& options, PreintegrationModel model,
+                    const ImuNoise& noise) {
+  BatchProblem problem(chain, options);
+  problem.optimize();
+  if (problem.reintegrate_moved_biases(noise, model)) problem.optimize();
+  BatchSolution solution;
+  for (std::size_t k = 0; k < chain.nodes.size(); ++k) solution.x.push_back(problem.state(k));
+  solution.covariance_w = covariances(problem, chain.nodes.size());
+  return solution;
+}
+
+// The forward run -------------------------------------------------------------------------------
+
+BatchRecorder::BatchRecorder(std::unique_ptr<Navigator> forward, const FgoOptions& options,
+                             PreintegrationModel model, const ImuNoise& noise)
+    : forward_(std::move(forward)), options_(options), model_(model), noise_(noise) {}
+
+void BatchRecorder::start(const Epoch& initial) {
+  if (integrator_) mark();
+  forward_->start(initial);
+  if (!frame_) frame_.emplace(initial.position);
+  integrator_.reset();
+  BatchChain& chain = chains_.emplace_back();
+  const Matrix15d covariance = turned(initial.covariance, frame_->R_w_n(initial.position));
+  chain.prior = prior_from_covariance(to_node(initial, *frame_, model_), covariance);
+  add_node(initial);
+}
+
+void BatchRecorder::propagate(const ImuIncrement& increment) {
+  forward_->propagate(increment);
+  integrator_->add(increment);
+  open_.increments.push_back(increment);
+}
+
+void BatchRecorder::update(const GnssFix& fix) {
+  mark();
+  forward_->update(fix);
+  const Epoch now = forward_->epoch();
+  BatchNode& node = chains_.back().nodes.back();
+  node.fixes.push_back(to_local(fix, *frame_));
+  node.x = to_node(now, *frame_, model_);
+  Passage& passage = passages_.back();
+  passage.filtered = {now.t_ns, now.position, now.velocity_n, now.q_n_b};
+  passage.filtered_bias = now.bias;
+  passage.p_b_a = fix.p_b_a;
+  begin_interval(now);
+}
+
+void BatchRecorder::hold() {
+  mark();
+  forward_->hold();
+}
+
+std::size_t BatchRecorder::mark() {
+  if (!at_node()) {
+    close_interval();
+    add_node(forward_->epoch());
+  }
+  return passages_.size() - 1;
+}
+
+void BatchRecorder::add_node(const Epoch& now) {
+  BatchNode& node = chains_.back().nodes.emplace_back();
+  node.t_ns = now.t_ns;
+  node.x = to_node(now, *frame_, model_);
+  Passage& passage = passages_.emplace_back();
+  passage.predicted = passage.filtered = {now.t_ns, now.position, now.velocity_n, now.q_n_b};
+  passage.predicted_bias = passage.filtered_bias = now.bias;
+  begin_interval(now);
+}
+
+void BatchRecorder::begin_interval(const Epoch& now) {
+  open_ = ImuInterval{};
+  if (integrator_) open_.before = integrator_->previous();
+  earth_ = earth_model(model_, *frame_, chains_.back().nodes.back().x.p_w_b);
+  integrator_.emplace(noise_, now.bias, now.t_ns, open_.before);
+}
+
+/// The increments are kept if five sigmas of the bias may turn the interval too far.
+void BatchRecorder::close_interval() {
+  const Preintegration pre = measured(*integrator_, model_);
+  const double bias_sigma = std::sqrt(
+      forward_->epoch().covariance.diagonal().segment<3>(error_state::kGyroBias).maxCoeff());
+  if (5 * bias_sigma * pre.dt < kReintegrationAngle) open_.increments = {};
+  open_.factor = std::make_unique<PreintegrationFactor>(pre, earth_);
+  chains_.back().intervals.push_back(std::move(open_));
+}
+
+std::vector<SmoothedEpoch> BatchRecorder::smoothed() {
+  std::vector<SmoothedEpoch> out;
+  out.reserve(passages_.size());
+  for (BatchChain& chain : chains_) {
+    const BatchSolution solution = solve(chain, options_, model_, noise_);
+    for (std::size_t k = 0; k < chain.nodes.size(); ++k) {
+      const Epoch epoch =
+          to_epoch(chain.nodes[k].t_ns, solution.x[k], solution.covariance_w[k], *frame_, model_);
+      out.push_back(smoothed_at(passages_[out.size()], epoch));
+    }
+  }
+  return out;
+}
+
+SmoothedEpoch BatchRecorder::smoothed_at(const Passage& passage, const Epoch& epoch) const {
+  const StrapdownState state{epoch.t_ns, epoch.position, epoch.velocity_n, epoch.q_n_b};
+  const auto error = [&](const StrapdownState& forward, const ImuBias& bias) {
+    Vector15d e;
+    e << difference(forward, state), epoch.bias.gyro - bias.gyro, epoch.bias.accel - bias.accel;
+    return e;
+  };
+  return {epoch, error(passage.predicted, passage.predicted_bias),
+          error(passage.filtered, passage.filtered_bias), passage.p_b_a};
+}
+
+std::unique_ptr<Estimator> make_batch_smoother(std::unique_ptr<Navigator> forward,
+                                               const FgoOptions& options, PreintegrationModel model,
+                                               const ImuNoise& noise, Aligner aligner,
+                                               const NavigationRunOptions& run_options,
+                                               Sink& sink) {
+  auto recorder = std::make_unique<BatchRecorder>(std::move(forward), options, model, noise);
+  BatchRecorder& recording = *recorder;
+  return std::make_unique<Smoother>(std::move(recorder), recording, std::move(aligner), run_options,
+                                    sink);
+}
+
+}  // namespace foucault

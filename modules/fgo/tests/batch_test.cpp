@@ -1,0 +1,226 @@
+#include "foucault/fgo/batch.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+
+#include "foucault/fgo/window_navigator.h"
+#include "noisy_drive.h"
+
+namespace foucault {
+namespace {
+
+using namespace testing;
+using namespace error_state;
+
+class BatchTest : public NoisyDrive {
+ protected:
+  std::unique_ptr<BatchRecorder> recorder(double window_s = 10) {
+    auto forward = std::make_unique<WindowNavigator>(window_of(window_s),
+                                                     PreintegrationModel::refined, test_noise());
+    return std::make_unique<BatchRecorder>(std::move(forward), exact(),
+                                           PreintegrationModel::refined, test_noise());
+  }
+
+  static FgoOptions exact() {
+    FgoOptions options;
+    options.max_iterations = 50;
+    return options;
+  }
+};
+
+/// A chain as a recorder would leave it, six nodes with fixes at all but two.
+struct ChainDrive : NoisyDrive {
+  void TestBody() override {}
+
+  /// `integrated_at`: gyro bias of the preintegration. `keep`: the increments.
+  BatchChain chain(double gyro_bias_sigma = 2e-4, const Vector3d& integrated_at = Vector3d::Zero(),
+                   bool keep = false) {
+    reseed(5);
+    Epoch begin = initial(1);
+    begin.covariance.block<3, 3>(kGyroBias, kGyroBias) =
+        gyro_bias_sigma * gyro_bias_sigma * Matrix3d::Identity();
+    NodeState x;
+    x.p_w_b = frame_.to_local(begin.position);
+    x.v_w_b = begin.velocity_n;
+    x.q_w_b = begin.q_n_b;
+    x.bias = begin.bias;
+    BatchChain out;
+    out.prior = prior_from_covariance(x, begin.covariance);
+    out.nodes.push_back({0, x, {}});
+    for (int k = 0; k < 5; ++k) {
+      Preintegrator integrator(test_noise(), {integrated_at, x.bias.accel}, k * 1'000'000'000LL);
+      ImuInterval& interval = out.intervals.emplace_back();
+      for (int64_t i = 0; i < 100; ++i) {
+        const int64_t t = k * 1'000'000'000LL + i * 10'000'000;
+        const ImuIncrement increment = noisy_increment(t, t + 10'000'000);
+        integrator.add(increment);
+        if (keep) interval.increments.push_back(increment);
+      }
+      interval.factor = std::make_unique<PreintegrationFactor>(integrator.result(), wuhan_earth());
+      x = predict(x, integrator.result(), wuhan_earth());
+      BatchNode& node = out.nodes.emplace_back();
+      node.x = x;
+      if (k != 1 && k != 2) node.fixes.push_back(to_local(fix_at(k + 1, 0.02), frame_));
+    }
+    return out;
+  }
+};
+
+/// The cost's gradient and Gauss-Newton matrix, dense.
+struct Dense {
+  Eigen::MatrixXd H;
+  Eigen::VectorXd gradient;
+};
+
+Dense dense(const BatchChain& chain, const std::vector<NodeState>& x) {
+  const Eigen::Index n = 15 * static_cast<Eigen::Index>(x.size());
+  Dense out{Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n)};
+  const auto add = [&](Eigen::Index at, const Eigen::MatrixXd& J, const Eigen::VectorXd& r) {
+    out.H.block(at, at, J.cols(), J.cols()) += J.transpose() * J;
+    out.gradient.segment(at, J.cols()) += J.transpose() * r;
+  };
+  const PriorFactor::Linearized prior = PriorFactor(chain.prior).linearize(x[0]);
+  add(0, prior.J, prior.r);
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    const Eigen::Index at = 15 * static_cast<Eigen::Index>(k);
+    for (const LocalFix& fix : chain.nodes[k].fixes) {
+      const GnssFactor::Linearized z = GnssFactor(fix).linearize(x[k]);
+      add(at, z.J, z.r);
+    }
+    if (k + 1 == x.size()) break;
+    const MotionResidual m = chain.intervals[k].factor->linearize(x[k], x[k + 1]);
+    Eigen::MatrixXd J(15, 30);
+    J << m.J_x0, m.J_x1;
+    add(at, J, m.r);
+  }
+  return out;
+}
+
+TEST(Batch, IsTheLeastSquaresSolutionWithItsCovariance) {
+  ChainDrive drive;
+  BatchChain chain = drive.chain();
+  FgoOptions options;
+  options.max_iterations = 50;
+  const BatchSolution solution = solve(chain, options, PreintegrationModel::refined, test_noise());
+  const Dense normal = dense(chain, solution.x);
+  // In units of sigmas, so that the dense inverse keeps its digits.
+  const Eigen::VectorXd scale = normal.H.diagonal().cwiseSqrt().cwiseInverse();
+  const Eigen::MatrixXd scaled = scale.asDiagonal() * normal.H * scale.asDiagonal();
+  const Eigen::MatrixXd covariance = scale.asDiagonal() * scaled.inverse() * scale.asDiagonal();
+  const Eigen::VectorXd left = covariance * normal.gradient;
+  const Eigen::VectorXd sigma = covariance.diagonal().cwiseSqrt();
+  EXPECT_LT(left.cwiseQuotient(sigma).cwiseAbs().maxCoeff(), 1e-3);
+  for (std::size_t k = 0; k < solution.x.size(); ++k) {
+    const Eigen::Index at = 15 * static_cast<Eigen::Index>(k);
+    const Vector15d unit = sigma.segment<15>(at).cwiseInverse();
+    const Matrix15d difference = solution.covariance_w[k] - covariance.block<15, 15>(at, at);
+    EXPECT_LT((unit.asDiagonal() * difference * unit.asDiagonal()).cwiseAbs().maxCoeff(), 1e-6)
+        << "node " << k;
+  }
+}
+
+TEST(Batch, ABiasThatMovedIsIntegratedAnew) {
+  // A phone's gyro bias, 0.05 rad/s, of which the forward run knew nothing.
+  const Vector3d wrong(0.05, -0.03, 0.04);
+  ChainDrive drive;
+  FgoOptions options;
+  options.max_iterations = 50;
+  const auto solved = [&](const Vector3d& integrated_at, bool keep) {
+    BatchChain chain = drive.chain(0.05, integrated_at, keep);
+    return solve(chain, options, PreintegrationModel::refined, test_noise());
+  };
+  const BatchSolution near = solved(Vector3d::Zero(), true);
+  const auto off = [&](const BatchSolution& other) {
+    double worst = 0;
+    for (std::size_t k = 0; k < near.x.size(); ++k) {
+      const Vector15d sigma = near.covariance_w[k].diagonal().cwiseSqrt();
+      const Vector15d difference = boxminus(other.x[k], near.x[k]).cwiseQuotient(sigma);
+      worst = std::max(worst, difference.cwiseAbs().maxCoeff());
+    }
+    return worst;
+  };
+  EXPECT_LT(off(solved(wrong, true)), 0.01);
+  EXPECT_GT(off(solved(wrong, false)), 0.1);  // first-order updates alone
+}
+
+TEST_F(BatchTest, EndsWhereAWindowOverEverythingEnds) {
+  reseed(1);
+  WindowNavigator window(window_of(1e9), PreintegrationModel::refined, test_noise());
+  window.start(initial(0.1));
+  run(window, 25, 10, 15, [](int) {});
+  reseed(1);
+  const std::unique_ptr<BatchRecorder> batch = recorder();
+  batch->start(initial(0.1));
+  run(*batch, 25, 10, 15, [](int) {});
+  const std::vector<SmoothedEpoch> nodes = batch->smoothed();
+  ASSERT_EQ(nodes.size(), 26u);
+  const Epoch a = nodes.back().epoch;
+  const Epoch b = window.epoch();
+  const Vector15d sigma = b.covariance.diagonal().cwiseSqrt();
+  EXPECT_LT((error(a) - error(b)).cwiseQuotient(sigma).cwiseAbs().maxCoeff(), 1e-2);
+  EXPECT_LT(
+      (a.covariance.diagonal().cwiseSqrt() - sigma).cwiseQuotient(sigma).cwiseAbs().maxCoeff(),
+      1e-3);
+}
+
+TEST_F(BatchTest, ErrorsInAnOutageStayWithinTheirCovarianceAndBelowForward) {
+  double nees_sum = 0, forward_square = 0, smoothed_square = 0;
+  constexpr int kRuns = 20;
+  for (unsigned seed = 0; seed < kRuns; ++seed) {
+    reseed(seed);
+    const std::unique_ptr<BatchRecorder> batch = recorder();
+    batch->start(initial(1));
+    Epoch forward;
+    run(*batch, 35, 15, 26, [&](int second) {
+      if (second == 25) forward = batch->epoch();
+    });
+    const std::vector<SmoothedEpoch> nodes = batch->smoothed();
+    const Vector15d e = error(nodes[20].epoch);
+    nees_sum += e.dot(nodes[20].epoch.covariance.ldlt().solve(e));
+    smoothed_square += error(nodes[20].epoch).head<2>().squaredNorm();
+    forward_square += error(forward).head<2>().squaredNorm();
+    const Vector15d variance = nodes[25].epoch.covariance.diagonal();
+    EXPECT_LT(variance.head<3>().sum(), forward.covariance.diagonal().head<3>().sum());
+  }
+  // Sum of kRuns chi-squares of 15; 99.9 %.
+  EXPECT_NEAR(nees_sum, 15.0 * kRuns, 3.3 * std::sqrt(2 * 15.0 * kRuns));
+  EXPECT_LT(smoothed_square, forward_square / 4);
+}
+
+TEST_F(BatchTest, WhatItFoundInTheForwardRunPutsItRight) {
+  reseed(2);
+  const std::unique_ptr<BatchRecorder> batch = recorder();
+  batch->start(initial(0.1));
+  Epoch forward;
+  run(*batch, 20, 8, 14, [&](int second) {
+    if (second == 13) forward = batch->epoch();
+  });
+  const SmoothedEpoch node = batch->smoothed()[13];
+  const StrapdownState state{forward.t_ns, forward.position, forward.velocity_n, forward.q_n_b};
+  const StrapdownState right = corrected(state, node.after.head<9>());
+  EXPECT_LT(displacement_n(right.position, node.epoch.position, Place(right.position)).norm(),
+            1e-6);
+  EXPECT_LT((right.v_n - node.epoch.velocity_n).norm(), 1e-9);
+  EXPECT_LT(right.q_n_b.angularDistance(node.epoch.q_n_b), 1e-9);
+  EXPECT_GT(node.after.head<3>().norm(), 1e-3);
+}
+
+TEST_F(BatchTest, ANewStartIsANewChain) {
+  reseed(3);
+  const std::unique_ptr<BatchRecorder> batch = recorder();
+  batch->start(initial(0.1));
+  run(*batch, 5, 99, 99, [](int) {});
+  const std::size_t before = batch->size();
+  reseed(3);
+  batch->start(initial(0.1));
+  run(*batch, 5, 99, 99, [](int) {});
+  const std::vector<SmoothedEpoch> nodes = batch->smoothed();
+  ASSERT_EQ(nodes.size(), 2 * before);
+  for (std::size_t k = 0; k < before; ++k) {
+    EXPECT_LT((error(nodes[k].epoch) - error(nodes[before + k].epoch)).norm(), 1e-6);
+  }
+}
+
+}  // namespace
+}  // namespace foucault
