@@ -20,8 +20,8 @@ LabMotion motion(const char* name, const char* title, const char* scenario, doub
 }
 
 LabMotion vibrating_car() {
-  LabMotion m = motion("vibration", "City car, engine vibration", "city", 60, 150);
-  m.scenario.vibration_hz = 25;
+  LabMotion m = motion("vibration", "Vibrating city car", "city", 60, 150);
+  m.scenario.vibration_hz = 23.7;
   m.scenario.vibration_m_s2 = 1;
   m.scenario.vibration_deg = 0.05;
   return m;

@@ -24,20 +24,21 @@ struct Ablation {
 
 const std::vector<Ablation>& ablations() {
   static const std::vector<Ablation> kAblations = [] {
-    std::vector<Ablation> all{{{"coning", "coning"}, {}},
+    std::vector<Ablation> all{{{"none", "nothing"}, {}},
+                              {{"coning", "coning"}, {}},
                               {{"sculling", "sculling"}, {}},
                               {{"rotation", "turning within a sample"}, {}},
                               {{"rotation_again", "its second order"}, {}},
                               {{"earth_rotation", "Earth rotation of the attitude"}, {}},
                               {{"coriolis", "Coriolis acceleration"}, {}},
                               {{"gravity_change", "change of gravity along the way"}, {}}};
-    all[0].terms.coning = false;
-    all[1].terms.sculling = false;
-    all[2].terms.rotation = all[2].terms.rotation_again = false;
-    all[3].terms.rotation_again = false;
-    all[4].terms.earth_rotation = false;
-    all[5].terms.coriolis = false;
-    all[6].terms.gravity = GravityAlong::start;
+    all[1].terms.coning = false;
+    all[2].terms.sculling = false;
+    all[3].terms.rotation = all[3].terms.rotation_again = false;
+    all[4].terms.rotation_again = false;
+    all[5].terms.earth_rotation = false;
+    all[6].terms.coriolis = false;
+    all[7].terms.gravity = GravityAlong::start;
     return all;
   }();
   return kAblations;

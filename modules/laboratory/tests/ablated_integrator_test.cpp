@@ -104,13 +104,14 @@ TEST_P(AblatedIntegratorOf, IsRoughWithoutTheEarthsRotation) {
 }
 
 // With nothing left out only the motion within the samples is missing. The position in a sample
-// follows the mean velocity, an error of second order: a quarter at twice the rate.
+// follows the mean velocity, an error of second order: a 16th at four times the rate. Of a
+// vibration's error parts of opposite sign cancel at the lower rate. First order would give 4.
 TEST_P(AblatedIntegratorOf, ConvergesWithGravityOfThePlace) {
   MotionTerms terms;
   terms.gravity = GravityAlong::place;
-  const double coarse = Trial(GetParam(), kShort, 500).error(terms).position;
+  const double coarse = Trial(GetParam(), kShort, 250).error(terms).position;
   const double fine = Trial(GetParam(), kShort, 1000).error(terms).position;
-  EXPECT_GT(coarse / fine, 3.8);
+  EXPECT_GT(coarse / fine, 10);
   EXPECT_LT(fine, 2e-7);
 }
 

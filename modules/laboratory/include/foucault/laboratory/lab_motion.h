@@ -21,10 +21,10 @@ struct LabMotion {
   double start_s(int interval) const { return first_start_s + interval * (period_s + 0.013); }
 };
 
-/// `city` 0-16 m/s with turns and stops; `vibration` the same with an engine's vibration, 25 Hz (a
-/// four-cylinder engine idling at 750 rpm fires so often), 1 m/s^2 and 0.05 deg about and along
-/// every axis; `motorway` 30 m/s; `airliner` 250 m/s at 10 km with turns, 100 to 500 km from the
-/// start of the trip.
+/// `city` 0-16 m/s with turns and stops; `vibration` the same with an engine's vibration, 1 m/s^2
+/// and 0.05 deg along and about every axis at 23.7 Hz (so often fires a four-cylinder engine idling
+/// at 711 rpm; in step with none of the rates and few of the durations); `motorway` 30 m/s;
+/// `airliner` 250 m/s at 10 km with turns, 200 to 360 km from the start of the trip.
 std::vector<std::string> lab_motion_names();
 
 /// Throws UsageError naming the known ones.

@@ -58,7 +58,7 @@ struct LabName {
 /// AblatedIntegrator with the gravity of every place, where nothing is missing but the motion
 /// within the samples.
 const std::vector<LabName>& lab_models();
-/// What is left out.
+/// What is left out; first `none`, AblatedIntegrator with all that `full` has.
 const std::vector<LabName>& lab_ablations();
 
 struct MotionStudy {
