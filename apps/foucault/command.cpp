@@ -11,6 +11,7 @@ const std::vector<Command>& commands() {
       {"run", "process a rawlog: solution files, metrics, report", declare_run},
       {"evaluate", "withhold fixes, measure the drift of every method", declare_evaluate},
       {"tune", "search the parameters with the least drift", declare_tune},
+      {"lab", "study the models on exact motion", declare_lab},
       {"report", "draw a report again from its numbers", declare_report},
   };
   return all;

@@ -35,6 +35,7 @@ std::function<void(Call&)> declare_info(CLI::App& app);
 std::function<void(Call&)> declare_run(CLI::App& app);
 std::function<void(Call&)> declare_evaluate(CLI::App& app);
 std::function<void(Call&)> declare_tune(CLI::App& app);
+std::function<void(Call&)> declare_lab(CLI::App& app);
 std::function<void(Call&)> declare_report(CLI::App& app);
 
 /// Text that was asked for instead of work (--help-config): print it, end with 0.

@@ -1,0 +1,91 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <filesystem>
+#include <memory>
+
+#include "command.h"
+#include "foucault/evaluation/task_pool.h"
+#include "foucault/reports/report_page.h"
+#include "laboratory_output.h"
+#include "laboratory_report.h"
+#include "output_directory.h"
+
+namespace foucault::app {
+namespace {
+
+struct LabOptions {
+  std::vector<std::string> motions = lab_motion_names();
+  int jobs = processor_count();
+  std::string out = "foucault-lab";
+  bool no_report = false;
+};
+
+MotionStudy study_motion(const LabMotion& motion, const StudyPlan& plan, int jobs,
+                         Console& console) {
+  const PreintegrationStudy study(motion, plan);
+  std::vector<PreintegrationStudy::Record> records(static_cast<std::size_t>(study.intervals()));
+  run_tasks(
+      records.size(), jobs,
+      [&](std::size_t i, const TaskProgress& progress) {
+        progress(0);
+        records[i] = study.measure(static_cast<int>(i));
+      },
+      console.progress_of(motion.title));
+  return study.summarize(records);
+}
+
+void study_preintegration(const LabOptions& options, Call& call) {
+  std::vector<LabMotion> motions;
+  for (const std::string& name : options.motions) motions.push_back(lab_motion(name));
+  OutputDirectory directory(options.out);
+  LabResult result;
+  result.command_line = call.command_line;
+  for (const LabMotion& motion : motions) {
+    result.motions.push_back(study_motion(motion, result.plan, options.jobs, call.console));
+  }
+  write_laboratory(result, directory.staging());
+  if (!options.no_report) {
+    call.console.progress("drawing", 0);
+    reports::write_report(reports::laboratory_page(laboratory_report(result)),
+                          (directory.staging() / "report").string());
+  }
+  directory.commit();
+  for (const std::string& line : laboratory_lines(result)) call.console.say(line);
+  call.console.say(fmt::format("{:<10} {}", "written", options.out));
+  if (!options.no_report) {
+    const std::filesystem::path page = std::filesystem::path(options.out) / "report" / "index.html";
+    call.console.say(fmt::format("{:<10} {}", "report", page.string()));
+  }
+}
+
+}  // namespace
+
+std::function<void(Call&)> declare_lab(CLI::App& app) {
+  app.require_subcommand(1);
+  CLI::App* preintegration = app.add_subcommand(
+      "preintegration", "Error of rough, refined and full, and of each term, on exact motion");
+  preintegration->fallthrough();
+  const auto o = std::make_shared<LabOptions>();
+  preintegration
+      ->add_option("--motion", o->motions,
+                   fmt::format("Of {}", fmt::join(lab_motion_names(), ", ")))
+      ->delimiter(',')
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+      ->capture_default_str();
+  preintegration->add_option("--jobs", o->jobs, "Intervals at the same time")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+  preintegration
+      ->add_option("--out", o->out, "Folder for preintegration.csv, metrics.json, report/")
+      ->capture_default_str();
+  preintegration->add_flag("--no-report", o->no_report, "Draw no figures");
+  app.footer(
+      "\nExamples:\n"
+      "  foucault lab preintegration --out lab\n"
+      "  foucault lab preintegration --motion vibration,airliner --out lab");
+  return [o](Call& call) { study_preintegration(*o, call); };
+}
+
+}  // namespace foucault::app
