@@ -86,7 +86,8 @@ Matrix mean_dynamics(const MotionIntegrals& integrals, const Place& place,
   a.block<3, 3>(kAttitude, kAttitude) = -dt * so3::skew(omega_ie_n + omega_en_n);
   a.block<3, 3>(kAttitude, kGyroBias) = -integrals.attitude;
 
-  a.diagonal().segment<6>(kGyroBias).setConstant(-dt / noise.imu.bias_tau);
+  a.diagonal().segment<3>(kGyroBias).setConstant(-dt / gyro_markov_bias(noise.imu).tau);
+  a.diagonal().segment<3>(kAccelBias).setConstant(-dt / accel_markov_bias(noise.imu).tau);
   if (noise.with_scale) {
     a.block<3, 3>(kAttitude, kGyroScale) = -integrals.attitude_rate;
     a.block<3, 3>(kVelocity, kAccelScale) = -integrals.attitude_force;
@@ -112,10 +113,11 @@ Vector driving_variance(const MotionIntegrals& integrals, const ProcessNoise& no
 }
 
 /// Puts the closed form of Gauss-Markov processes in the place of its series.
-void set_markov(int row, double dt, double tau, double sigma, Transition& t) {
-  t.phi.block<3, 3>(row, row) = std::exp(-dt / tau) * Eigen::Matrix3d::Identity();
+void set_markov(int row, double dt, const MarkovBias& process, Transition& t) {
+  const double variance = process.sigma * process.sigma;
+  t.phi.block<3, 3>(row, row) = std::exp(-dt / process.tau) * Eigen::Matrix3d::Identity();
   t.q.block<3, 3>(row, row) =
-      -std::expm1(-2 * dt / tau) * sigma * sigma * Eigen::Matrix3d::Identity();
+      -std::expm1(-2 * dt / process.tau) * variance * Eigen::Matrix3d::Identity();
 }
 
 /// Attitude errors in b: at the begin dtheta = C0' psi, at the end dtheta = C1' psi.
@@ -196,11 +198,11 @@ Transition transition(const MotionIntegrals& integrals, const StrapdownState& be
   t.q.noalias() += (1.0 / 6) * full_driven * t.phi.transpose();
   t.q.diagonal() += variance / 6;
 
-  set_markov(kGyroBias, integrals.dt, noise.imu.bias_tau, noise.imu.gyro_bias_sigma, t);
-  set_markov(kAccelBias, integrals.dt, noise.imu.bias_tau, noise.imu.accel_bias_sigma, t);
+  set_markov(kGyroBias, integrals.dt, gyro_markov_bias(noise.imu), t);
+  set_markov(kAccelBias, integrals.dt, accel_markov_bias(noise.imu), t);
   if (noise.with_scale) {
-    set_markov(kGyroScale, integrals.dt, noise.scale_tau, noise.gyro_scale_sigma, t);
-    set_markov(kAccelScale, integrals.dt, noise.scale_tau, noise.accel_scale_sigma, t);
+    set_markov(kGyroScale, integrals.dt, {noise.gyro_scale_sigma, noise.scale_tau}, t);
+    set_markov(kAccelScale, integrals.dt, {noise.accel_scale_sigma, noise.scale_tau}, t);
   }
   turn_attitude_to_body(begin.q_n_b.toRotationMatrix(), end.q_n_b.toRotationMatrix(), t);
   return t;

@@ -161,6 +161,27 @@ TEST(ErrorModel, MarkovProcessesAreInClosedForm) {
   EXPECT_NEAR(t.q(14, 14) / 9e-4, 1 - std::exp(-0.2), 1e-12);
 }
 
+/// After hours the constant part of a bias is as unknown as before: a filter that let it decay with
+/// the variation would be sure of a wrong bias.
+TEST(ErrorModel, TurnOnValuesDoNotDecay) {
+  ekf::ProcessNoise noise;
+  noise.imu.bias_tau = 5;
+  noise.imu.gyro_bias_sigma = 1e-3;
+  noise.imu.gyro_turn_on_sigma = 1e-2;
+  noise.imu.accel_turn_on_sigma = 3e-2;  // and no variation
+  const Trip trip({"static", 10, 0.5, 100});
+  ekf::MotionIntegrals integrals;
+  const StrapdownState begin = trip.truth(trip.begin_ns());
+  const Eigen::Matrix3d R = begin.q_n_b.toRotationMatrix();
+  for (const ImuIncrement& increment : trip.increments()) integrals.add(increment, R, R, noise.imu);
+  const ekf::Transition t = transition(integrals, begin, begin, noise);
+  EXPECT_NEAR(t.phi(9, 9), std::exp(-0.1 / 101), 1e-15);
+  // The driving noise is that of the variation, but for the decay over half a second.
+  EXPECT_NEAR(t.q(9, 9), 2 * 1e-6 / 5 * 0.5, 2e-10);
+  EXPECT_EQ(t.phi(12, 12), 1);
+  EXPECT_EQ(t.q(12, 12), 0);
+}
+
 /// Errors of a filter that starts exact and gets noisy increments, against its covariance.
 struct MonteCarlo {
   int runs = 0;

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "foucault/core/error.h"
 
@@ -63,11 +64,25 @@ constexpr std::array<Preset, 6> kPresets{{
       0.0035 * kDegPerHour, 25 * kMicroG}},
 }};
 
+MarkovBias markov_bias(double turn_on_sigma, double sigma, double tau) {
+  const double variance = turn_on_sigma * turn_on_sigma + sigma * sigma;
+  if (sigma == 0) return {turn_on_sigma, std::numeric_limits<double>::infinity()};
+  return {std::sqrt(variance), tau * variance / (sigma * sigma)};
+}
+
 void override_with(const std::optional<double>& value, double unit, double& target) {
   if (value) target = *value * unit;
 }
 
 }  // namespace
+
+MarkovBias gyro_markov_bias(const ImuNoise& noise) {
+  return markov_bias(noise.gyro_turn_on_sigma, noise.gyro_bias_sigma, noise.bias_tau);
+}
+
+MarkovBias accel_markov_bias(const ImuNoise& noise) {
+  return markov_bias(noise.accel_turn_on_sigma, noise.accel_bias_sigma, noise.bias_tau);
+}
 
 std::vector<std::string> imu_preset_names() {
   std::vector<std::string> names;

@@ -44,6 +44,21 @@ TEST(ImuNoise, BetterGradesAreBetterInEveryNumber) {
   EXPECT_LT(better.accel_turn_on_sigma, worse.accel_turn_on_sigma);
 }
 
+/// Variance and driving noise q = 2 sigma^2 / tau are those of turn-on value plus variation.
+TEST(ImuNoise, BiasAsOneMarkovProcess) {
+  const ImuNoise noise = imu_preset("navigation");
+  const MarkovBias gyro = gyro_markov_bias(noise);
+  expect_near_relative(gyro.sigma, std::hypot(noise.gyro_turn_on_sigma, noise.gyro_bias_sigma));
+  expect_near_relative(2 * gyro.sigma * gyro.sigma / gyro.tau, noise.gyro_bias_power());
+  const MarkovBias accel = accel_markov_bias(noise);
+  expect_near_relative(2 * accel.sigma * accel.sigma / accel.tau, noise.accel_bias_power());
+  ImuNoise plain = noise;
+  plain.gyro_turn_on_sigma = 0;
+  expect_near_relative(gyro_markov_bias(plain).tau, plain.bias_tau);
+  plain.accel_bias_sigma = 0;
+  EXPECT_TRUE(std::isinf(accel_markov_bias(plain).tau));
+}
+
 TEST(ImuNoise, EveryNamedPresetIsComplete) {
   for (const std::string& name : imu_preset_names()) {
     const ImuNoise n = imu_preset(name);

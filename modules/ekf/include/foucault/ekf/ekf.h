@@ -27,7 +27,7 @@ class EkfOptions : public Configurable {
 /// The state moves with every increment; the covariance follows in steps of several increments,
 /// whenever it is asked for and at least every cov_interval_s.
 /// The biases' nominal values stay as they are between updates (their turn-on values do not decay);
-/// their errors are Gauss-Markov processes.
+/// their errors are the Gauss-Markov processes of MarkovBias.
 class EkfNavigator : public Navigator {
  public:
   EkfNavigator(const ImuNoise& imu, const EkfOptions& options);

@@ -23,6 +23,16 @@ struct ImuNoise {
   double accel_bias_power() const { return 2 * accel_bias_sigma * accel_bias_sigma / bias_tau; }
 };
 
+/// A bias as one state: the first-order Gauss-Markov process that has the variance of turn-on value
+/// and variation together, and the driving noise of the variation, q = 2 sigma^2 / tau. What is
+/// constant does not decay: the larger the turn-on value, the longer its correlation time.
+struct MarkovBias {
+  double sigma;  ///< steady state; unit of the sensor
+  double tau;    ///< [s]; infinite for a constant
+};
+MarkovBias gyro_markov_bias(const ImuNoise& noise);
+MarkovBias accel_markov_bias(const ImuNoise& noise);
+
 /// How samples in a log are to be read: rates at the stamp, or increments over the interval that
 /// ends at the stamp, divided by its length.
 enum class SampleKind { instantaneous, interval_mean };
