@@ -127,6 +127,32 @@ Json comparisons_json(const std::vector<MethodOutages>& outages) {
   return json;
 }
 
+Json bin_json(const ProfileBin& bin) {
+  Json methods = Json::object();
+  for (const BinDrift& drift : bin.methods) {
+    methods[drift.method] = {{"horizontal_rmse_m", estimate_json(drift.horizontal_m)},
+                             {"vertical_rmse_m", estimate_json(drift.vertical_m)},
+                             {"horizontal_relative", estimate_json(drift.horizontal_relative)},
+                             {"vertical_relative", estimate_json(drift.vertical_relative)}};
+  }
+  return {{"from_km", bin.bin.from_km},
+          {"to_km", bin.bin.to_km},
+          {"mean_km", bin.mean_km},
+          {"outages", bin.bin.outages.size()},
+          {"methods", methods}};
+}
+
+/// Relative differences are from the first method.
+Json distances_json(const std::vector<DistanceProfile>& profiles) {
+  Json json = Json::array();
+  for (const DistanceProfile& profile : profiles) {
+    Json bins = Json::array();
+    for (const ProfileBin& bin : profile.bins) bins.push_back(bin_json(bin));
+    json.push_back({{"group", profile.group}, {"bins", bins}});
+  }
+  return json;
+}
+
 const char* truth_name(DriftTruth truth) {
   return truth == DriftTruth::reference ? "reference" : "withheld_fixes";
 }
@@ -156,6 +182,7 @@ std::string metrics_text(const EvaluationSummary& summary, const EvaluationLabel
   }
   json[summary.row_header() == "IMU" ? "imus" : "recordings"] = rows;
   json["comparisons"] = comparisons_json(summary.rows());
+  json["distances"] = distances_json(summary.distances());
   json["runs"] = runs_json(summary.results());
   json["interval"] = "95 % bootstrap over outages";
   json["command"] = labels.command_line;
@@ -201,6 +228,13 @@ EvaluationSummary::EvaluationSummary(std::vector<ExperimentResult> results)
       rows_(table_rows(results_)),
       row_header_(count_distinct(results_, &ExperimentResult::imu) > 1 ? "IMU" : "Recording") {
   require_outages(overall_, results_);
+  distances_ = distance_profiles(distance_groups());
+}
+
+const std::vector<MethodOutages>& EvaluationSummary::distance_groups() const {
+  const bool together =
+      row_header_ != "IMU" && count_distinct(results_, &ExperimentResult::recording) > 1;
+  return together ? overall_ : rows_;
 }
 
 TextTable EvaluationSummary::rms_table() const {
@@ -226,6 +260,11 @@ void write_evaluation(const EvaluationSummary& summary, const EvaluationLabels& 
   write_table(summary.rms_table(), folder / "tables", "table_iii");
   write_table(summary.difference_table(), folder / "tables", "table_iv");
   write_table(summary.statistics_table(), folder / "tables", "statistics");
+  if (summary.distances().empty()) return;
+  write_table(distance_table(summary.distances(), summary.row_header()), folder / "tables",
+              "distance");
+  write_table(distance_difference_table(summary.distances(), summary.row_header()),
+              folder / "tables", "distance_difference");
 }
 
 std::string outages_text(const EvaluationSummary& summary) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "console.h"
+#include "foucault/evaluation/distance.h"
 #include "foucault/evaluation/experiment.h"
 
 /// What an evaluation writes and says.
@@ -35,6 +36,11 @@ class EvaluationSummary {
   /// What heads the column that names the rows: "IMU" or "Recording".
   const std::string& row_header() const { return row_header_; }
 
+  /// Groups of outages that distances() tells apart: IMUs, else all recordings together.
+  const std::vector<MethodOutages>& distance_groups() const;
+  /// Drift by distance from the start; none if no recording goes far enough.
+  const std::vector<DistanceProfile>& distances() const { return distances_; }
+
   TextTable rms_table() const;         ///< Table III
   TextTable difference_table() const;  ///< Table IV
   TextTable statistics_table() const;
@@ -45,9 +51,11 @@ class EvaluationSummary {
   std::vector<MethodOutages> overall_;
   std::vector<MethodOutages> rows_;
   std::string row_header_;
+  std::vector<DistanceProfile> distances_;
 };
 
-/// drift.csv, metrics.json, config.yaml and tables/table_iii, table_iv, statistics (.csv, .md).
+/// drift.csv, metrics.json, config.yaml and tables/table_iii, table_iv, statistics (.csv, .md); for
+/// recordings that go far, also tables/distance and distance_difference.
 void write_evaluation(const EvaluationSummary& summary, const EvaluationLabels& labels,
                       const std::filesystem::path& folder);
 

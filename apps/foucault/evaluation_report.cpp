@@ -157,7 +157,7 @@ OutageMap outage_map(const ComparedRuns& runs, const std::string& name) {
   if (first.track.empty()) return map;
   const LocalFrame frame(first.track.front().position);
   const auto truth = [&](const TrackPoint& p) -> Eigen::Vector3d {
-    return frame.to_local(p.position) - p.error_n;
+    return frame.to_local(p.position) - frame.R_w_n(p.position) * p.error_n;
   };
   walk(
       first.track, [&](const TrackPoint& p) { add(map.truth, truth(p)); },
@@ -177,6 +177,50 @@ OutageMap outage_map(const ComparedRuns& runs, const std::string& name) {
     map.estimates.push_back(std::move(estimate));
   }
   return map;
+}
+
+reports::DistanceDrift::Method distance_method(const MethodOutages& outages,
+                                               const DistanceProfile& profile) {
+  reports::DistanceDrift::Method method;
+  method.method = outages.method;
+  for (const MethodOutages::Entry& entry : outages.entries) {
+    method.distance_km.push_back(entry.drift->distance_m * 1e-3);
+  }
+  method.horizontal_m = outages.horizontal_max();
+  method.vertical_m = outages.vertical_max();
+  for (const ProfileBin& bin : profile.bins) {
+    for (const BinDrift& drift : bin.methods) {
+      if (drift.method != outages.method) continue;
+      method.bins.push_back({bin.mean_km, bounded(drift.horizontal_m), bounded(drift.vertical_m)});
+    }
+  }
+  return method;
+}
+
+std::vector<reports::DistanceDrift> distance_drifts(const EvaluationSummary& summary) {
+  std::vector<reports::DistanceDrift> drifts;
+  for (const DistanceProfile& profile : summary.distances()) {
+    reports::DistanceDrift drift{profile.group, {}};
+    for (const MethodOutages& o : summary.distance_groups()) {
+      if (o.group == profile.group) drift.methods.push_back(distance_method(o, profile));
+    }
+    drifts.push_back(std::move(drift));
+  }
+  return drifts;
+}
+
+std::vector<reports::Table> distance_tables(const EvaluationSummary& summary) {
+  if (summary.distances().empty()) return {};
+  std::vector<reports::Table> tables{
+      report_table(distance_table(summary.distances(), summary.row_header()),
+                   "RMS over the outages of a bin of the largest drift in each, with the 95 % "
+                   "bootstrap interval.")};
+  if (summary.methods().size() > 1) {
+    tables.push_back(report_table(
+        distance_difference_table(summary.distances(), summary.row_header()),
+        "The interval is a 95 % bootstrap over the outages of the bin, drawn in pairs."));
+  }
+  return tables;
 }
 
 std::vector<reports::KeyNumber> key_numbers(const EvaluationSummary& summary) {
@@ -237,6 +281,8 @@ reports::EvaluationReport evaluation_report(const EvaluationSummary& summary,
   report.tables = report_tables(summary);
   report.rms = drift_rms(summary.rows());
   report.cases = shown_cases(summary);
+  report.distances = distance_drifts(summary);
+  report.distance_tables = distance_tables(summary);
   for (const ComparedRuns& runs : shown_runs(summary)) {
     const std::string name = name_of(runs, summary);
     report.timelines.push_back(timeline(runs, name));

@@ -390,6 +390,104 @@ Figure drift_bars(const std::vector<DriftRms>& rms, const MethodOrder& order) {
   return figure;
 }
 
+namespace {
+
+using DistanceColumn = std::vector<double> DistanceDrift::Method::*;
+using DistanceNumber = Bounded DistanceDrift::Bin::*;
+
+/// The outages behind the bins, faint.
+Series outages_by_distance(const DistanceDrift::Method& method, DistanceColumn column, Ink ink) {
+  Series series;
+  series.mark = Mark::points;
+  series.column = method.method + " outage";
+  series.ink = ink;
+  series.size = 3.2;
+  series.opacity = 0.3;
+  series.range_role = RangeRole::most;
+  series.x = method.distance_km;
+  series.y = method.*column;
+  return series;
+}
+
+/// RMS of the bins with intervals, `shift` [km] aside so that methods that agree are both seen.
+Series bins_by_distance(const DistanceDrift::Method& method, DistanceNumber number, double shift,
+                        const Series& look) {
+  Series series = look;
+  series.label.clear();
+  series.column = method.method + " interval";
+  series.mark = Mark::points;
+  series.size = 6;
+  series.dashed = false;
+  for (const DistanceDrift::Bin& bin : method.bins) {
+    const Bounded& rms = bin.*number;
+    series.x.push_back(bin.distance_km + shift);
+    series.y.push_back(rms.value);
+    series.lower.push_back(rms.low);
+    series.upper.push_back(rms.high);
+  }
+  return series;
+}
+
+double farthest(const DistanceDrift& drift) {
+  double result = 0;
+  for (const DistanceDrift::Method& method : drift.methods) {
+    for (const double d : method.distance_km) {
+      if (std::isfinite(d)) result = std::max(result, d);
+    }
+  }
+  return result;
+}
+
+Panel distance_panel(const DistanceDrift& drift, const MethodOrder& order, DistanceColumn column,
+                     DistanceNumber number, const std::string& label) {
+  constexpr double kShift = 0.006;  // of the axis
+  Panel panel;
+  panel.x = axis("Distance from the start", "km");
+  panel.x.from_zero = true;
+  panel.y = axis(label, "m", AxisKind::log);
+  const double middle = 0.5 * (static_cast<double>(drift.methods.size()) - 1);
+  std::vector<Series> over;
+  for (size_t m = 0; m < drift.methods.size(); ++m) {
+    const DistanceDrift::Method& method = drift.methods[m];
+    const Series look = method_series(method.method, order);
+    const double shift = kShift * farthest(drift) * (static_cast<double>(m) - middle);
+    const Series bins = bins_by_distance(method, number, shift, look);
+    Series line = look;
+    line.column = method.method + " rms";
+    line.x = bins.x;
+    line.y = bins.y;
+    panel.series.push_back(outages_by_distance(method, column, look.ink));
+    over.push_back(std::move(line));
+    over.push_back(bins);
+  }
+  panel.series.insert(panel.series.end(), over.begin(), over.end());
+  return panel;
+}
+
+}  // namespace
+
+Figure drift_by_distance(const DistanceDrift& drift, const MethodOrder& order) {
+  const size_t outages = drift.methods.empty() ? 0 : drift.methods[0].distance_km.size();
+  Figure figure;
+  figure.name = "drift_by_distance_" + file_part(drift.name);
+  figure.title = "Drift against distance from the start";
+  figure.subtitle = fmt::format("{} · {} outages", drift.name, outages);
+  figure.caption =
+      "The largest drift of each outage (faint) and its root mean square over neighbouring outages "
+      "with the 95 % bootstrap interval. A method that is right everywhere on Earth drifts alike "
+      "at "
+      "every distance.";
+  figure.height_mm = 165;
+  figure.share_x = true;
+  figure.panels = {
+      distance_panel(drift, order, &DistanceDrift::Method::horizontal_m,
+                     &DistanceDrift::Bin::horizontal_m, "Horizontal"),
+      distance_panel(drift, order, &DistanceDrift::Method::vertical_m,
+                     &DistanceDrift::Bin::vertical_m, "Vertical"),
+  };
+  return figure;
+}
+
 Figure error_timeline(const ErrorTimeline& timeline, const MethodOrder& order) {
   Panel panel;
   panel.x = axis("Time since start", "s", AxisKind::duration);

@@ -22,6 +22,21 @@ Section case_section(const DriftCase& drift_case, const MethodOrder& order) {
   return section;
 }
 
+Section distance(const EvaluationReport& report) {
+  Section section;
+  section.title = "Distance from the start";
+  section.paragraphs = {
+      "The distance is the straight line from the first fix of the recording to the first one "
+      "withheld. The vertical turns by 0.157 mrad per kilometre: a method that takes gravity as "
+      "constant in a frame fixed at the start sees the way travelled as a rotation, of 1 deg/h at "
+      "30 m/s and 8 deg/h at 250 m/s."};
+  section.tables = report.distance_tables;
+  for (const DistanceDrift& drift : report.distances) {
+    section.figures.push_back(drift_by_distance(drift, report.methods));
+  }
+  return section;
+}
+
 Section recordings(const EvaluationReport& report) {
   Section section;
   section.title = "Recordings";
@@ -45,6 +60,7 @@ ReportPage evaluation_page(const EvaluationReport& report) {
   for (const DriftCase& drift_case : report.cases) {
     page.sections.push_back(case_section(drift_case, report.methods));
   }
+  if (!report.distances.empty()) page.sections.push_back(distance(report));
   Section last = recordings(report);
   if (!last.figures.empty()) page.sections.push_back(std::move(last));
   page.listings = report.listings;

@@ -83,6 +83,25 @@ OutageMap made_up_map() {
   return map;
 }
 
+DistanceDrift made_up_distances() {
+  DistanceDrift drift{"X", {}};
+  for (const std::string& method : kMethods) {
+    DistanceDrift::Method of_method;
+    of_method.method = method;
+    const double scale = method == "rough" ? 10 : 1;
+    for (int i = 0; i < 40; ++i) {
+      of_method.distance_km.push_back(1.5 * i);
+      of_method.horizontal_m.push_back(scale * (1 + i % 5));
+      of_method.vertical_m.push_back(0.1 * scale * (1 + i % 3));
+    }
+    for (const double km : {10.0, 30.0, 50.0}) {
+      of_method.bins.push_back({km, {3 * scale, 2 * scale, 4 * scale}, {scale, 0.5, 2 * scale}});
+    }
+    drift.methods.push_back(of_method);
+  }
+  return drift;
+}
+
 ParameterMap made_up_parameters() {
   ParameterMap map;
   map.name = "tune_arw_vrw";
@@ -118,6 +137,7 @@ EvaluationReport made_up_report() {
   }
   report.timelines = {made_up_timeline()};
   report.maps = {made_up_map()};
+  report.distances = {made_up_distances()};
   report.footer = "foucault";
   return report;
 }
@@ -163,12 +183,30 @@ TEST(EvaluationFigures, AMethodHasOneColourEverywhere) {
   EXPECT_EQ(ink, error_timeline(made_up_timeline(), kMethods).panels[0].series[2].ink);
 }
 
+TEST(EvaluationFigures, DistancesShowEveryOutageAndTheBinsOnTop) {
+  const Figure figure = drift_by_distance(made_up_distances(), kMethods);
+  ASSERT_EQ(figure.panels.size(), 2U);
+  const std::vector<Series>& series = figure.panels[0].series;
+  ASSERT_EQ(series.size(), 9U);
+  for (size_t m = 0; m < 3; ++m) {
+    EXPECT_EQ(series[m].x.size(), 40U);
+    const Series& line = series[3 + 2 * m];
+    const Series& bins = series[4 + 2 * m];
+    EXPECT_EQ(line.label, kMethods[m]);
+    EXPECT_EQ(line.y, bins.y);
+    EXPECT_EQ(bins.upper.size(), 3U);
+    // Set aside a little, so that methods that agree are all seen.
+    EXPECT_NEAR(bins.x[1], 30, 1);
+    EXPECT_TRUE(m == 0 || bins.x[1] > series[2 + 2 * m].x[1]);
+  }
+}
+
 TEST(EvaluationFigures, SurviveEmptyResults) {
   const DriftCase empty{"none", {{"ekf", {}}}};
   for (const Figure& figure :
        {drift_curves(empty, kMethods), maximum_drifts(empty, kMethods),
         drift_distribution(empty, kMethods), drift_growth(empty, kMethods), drift_bars({}, {}),
-        error_timeline({}, {}), outage_map({}, {}), parameter_map({})}) {
+        error_timeline({}, {}), outage_map({}, {}), parameter_map({}), drift_by_distance({}, {})}) {
     EXPECT_NO_THROW(Renderer().png(figure)) << figure.name;
   }
 }
@@ -179,9 +217,9 @@ TEST(EvaluationReportPage, IsWrittenWhole) {
   ReportPage page = evaluation_page(made_up_report());
   page.sections.push_back({"Tuning", {}, {}, {parameter_map(made_up_parameters())}});
   write_report(page, folder);
-  for (const char* name :
-       {"drift_rms", "drift_curves_icm20602", "drift_growth_adis16465",
-        "error_timeline_trip_rawlog", "outage_map_trip_rawlog", "tune_arw_vrw"}) {
+  for (const char* name : {"drift_rms", "drift_curves_icm20602", "drift_growth_adis16465",
+                           "error_timeline_trip_rawlog", "outage_map_trip_rawlog",
+                           "drift_by_distance_x", "tune_arw_vrw"}) {
     EXPECT_TRUE(std::filesystem::exists(folder / (std::string(name) + ".png"))) << name;
   }
   if (std::getenv("FOUCAULT_KEEP_REPORT") == nullptr) std::filesystem::remove_all(folder);

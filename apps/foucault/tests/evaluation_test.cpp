@@ -86,6 +86,7 @@ TEST_F(EvaluationTest, WritesWhatItFound) {
   EXPECT_EQ(json["comparisons"][0]["other"], "rough");
   EXPECT_EQ(json["config"], labels.config);
   EXPECT_TRUE(json.contains("version"));
+  EXPECT_TRUE(json["distances"].empty()) << "nothing is far from the start";
 
   for (const char* name : {"tables/table_iii.csv", "tables/table_iii.md", "tables/table_iv.csv",
                            "tables/table_iv.md", "tables/statistics.csv", "config.yaml"}) {
@@ -94,6 +95,49 @@ TEST_F(EvaluationTest, WritesWhatItFound) {
   const test::Table drifts(out / "drift.csv");
   EXPECT_THAT(drifts.column("length_s"), Each(20));
   EXPECT_THAT(drifts.column("outage"), ElementsAre(1, 2, 3, 1, 2, 3, 1, 2, 3, 1, 2, 3));
+  EXPECT_THAT(drifts.column("distance_km"), Each(testing::AllOf(testing::Gt(0), testing::Lt(5))));
+}
+
+/// An airliner's first minutes: outages from the runway to some 20 km.
+TEST_F(EvaluationTest, DriftByDistanceOfATripThatGoesFar) {
+  const test::TestFolder folder;
+  Console console(true);
+  SimulationSettings flight;
+  flight.imu.preset = "navigation";
+  flight.scenario.name = "airliner";
+  flight.scenario.duration_s = 260;
+  flight.scenario.imu_rate_hz = 50;
+  write_simulation(flight, folder / "flight.rawlog", console);
+  Settings far = settings();
+  far.imu.preset = "navigation";
+  far.outages.first_s = 100;
+  far.outages.period_s = 30;
+  far.outages.shifts_s = {0, 15};
+  const EvaluationSummary summary(
+      evaluate(cross({folder / "flight.rawlog"}, {"ekf", "full"}, far), 2, console));
+
+  ASSERT_EQ(summary.distances().size(), 1u);
+  const DistanceProfile& profile = summary.distances()[0];
+  EXPECT_EQ(profile.group, "flight");
+  std::size_t outages = 0;
+  for (const ProfileBin& bin : profile.bins) outages += bin.bin.outages.size();
+  EXPECT_EQ(outages, summary.overall()[0].entries.size());
+  EXPECT_GT(profile.bins.back().bin.to_km, kFarKm);
+
+  write_evaluation(summary, {}, folder.path());
+  const auto json = nlohmann::json::parse(folder.text("metrics.json"));
+  const auto& first = json["distances"][0]["bins"][0];
+  EXPECT_EQ(first["methods"]["ekf"]["horizontal_relative"]["value"], 0);
+  EXPECT_GT(first["methods"]["full"]["horizontal_rmse_m"]["value"], 0);
+  EXPECT_FALSE(folder.text("tables/distance.csv").empty());
+  const test::Table drifts(folder / "drift.csv");
+  EXPECT_GT(drifts.column("distance_km").back(), kFarKm);
+
+  const reports::EvaluationReport report = evaluation_report(summary, {});
+  ASSERT_EQ(report.distances.size(), 1u);
+  ASSERT_EQ(report.distances[0].methods.size(), 2u);
+  EXPECT_EQ(report.distances[0].methods[1].bins.size(), profile.bins.size());
+  EXPECT_EQ(report.distance_tables.size(), 2u);
 }
 
 /// The report's numbers are those of metrics.json.
@@ -112,6 +156,7 @@ TEST_F(EvaluationTest, ReportHoldsAllFigures) {
   EXPECT_EQ(report.timelines[0].curves.size(), 2u);
   ASSERT_EQ(report.maps.size(), 1u);
   EXPECT_EQ(report.maps[0].estimates.size(), 2u);
+  EXPECT_TRUE(report.distances.empty());
 }
 
 TEST_F(EvaluationTest, AShortLogIsToldWhatToChange) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "foucault/core/time.h"
 #include "foucault/evaluation/csv_line.h"
@@ -114,6 +115,8 @@ std::vector<std::string> record_cells(const DriftRecord& record) {
       row.insert(row.end(), 2, "");
     }
   }
+  const double distance_m = record.drift.distance_m;
+  row.push_back(std::isfinite(distance_m) ? fmt::format("{:.3f}", distance_m * 1e-3) : "");
   return row;
 }
 
@@ -219,6 +222,7 @@ TextTable drift_record_table(const std::vector<DriftRecord>& records,
     table.header.push_back(fmt::format("horizontal_{}s_m", mark_s));
     table.header.push_back(fmt::format("vertical_{}s_m", mark_s));
   }
+  table.header.push_back("distance_km");
   for (const DriftRecord& record : records) table.rows.push_back(record_cells(record));
   return table;
 }

@@ -1,12 +1,24 @@
 #include "foucault/evaluation/outage.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <utility>
 
 #include "foucault/core/error.h"
 #include "foucault/core/time.h"
+#include "foucault/geodesy/local_frame.h"
 
 namespace foucault {
+namespace {
+
+bool has_position(const GnssFix& fix) {
+  return std::isfinite(fix.antenna.latitude) && std::isfinite(fix.antenna.longitude) &&
+         std::isfinite(fix.antenna.height);
+}
+
+}  // namespace
+
 void OutageOptions::fields(ConfigFields& f) {
   f.number("first_s", first_s, kNotNegative, "start of the first outage, after the first fix");
   f.number("length_s", length_s, kPositive, "length of an outage");
@@ -67,6 +79,7 @@ std::optional<Measurement> OutageSource::next() {
   if (!fix) return measurement;
   if (!first_fix_ns_) first_fix_ns_ = fix->t_ns;
   last_fix_ns_ = fix->t_ns;
+  if (!first_position_ && has_position(*fix)) first_position_ = fix->antenna;
   const std::optional<Outage> outage = outage_at(fix->t_ns);
   if (!outage) return measurement;
   withheld_(*outage, *fix);
@@ -74,6 +87,11 @@ std::optional<Measurement> OutageSource::next() {
 }
 
 const Mounting& OutageSource::mounting() const { return source_->mounting(); }
+
+double OutageSource::from_first_fix(const GnssFix& fix) const {
+  if (!first_position_ || !has_position(fix)) return std::numeric_limits<double>::quiet_NaN();
+  return LocalFrame(*first_position_).to_local(fix.antenna).norm();
+}
 
 double OutageSource::progress() const { return source_->progress(); }
 

@@ -64,12 +64,17 @@ class DriftMeter : public Sink {
     const bool use_reference = !by_reference.empty() && by_reference.size() >= by_fixes.size();
     result.truth = use_reference ? DriftTruth::reference : DriftTruth::withheld_fixes;
     result.drifts = use_reference ? by_reference : by_fixes;
+    for (OutageDrift& drift : result.drifts) {
+      const auto known = distances_m_.find(drift.outage.index);
+      if (known != distances_m_.end()) drift.distance_m = known->second;
+    }
     return result;
   }
 
  private:
   void withheld(const Outage& outage, const GnssFix& fix) {
     outages_.insert_or_assign(outage.index, outage);
+    distances_m_.try_emplace(outage.index, source_.from_first_fix(fix));
     withheld_.withheld(outage, fix);
   }
   void withheld_error(const Outage& outage, const Epoch& epoch, const Eigen::Vector3d& error_n) {
@@ -83,7 +88,8 @@ class DriftMeter : public Sink {
   }
 
   OutageRunObserver* observer_;
-  std::map<int64_t, Outage> outages_;  ///< that withheld a fix, by index
+  std::map<int64_t, Outage> outages_;      ///< that withheld a fix, by index
+  std::map<int64_t, double> distances_m_;  ///< of the first fix withheld in each
   DriftCollector by_reference_;
   DriftCollector by_fixes_;
   WithheldTruth withheld_;

@@ -68,11 +68,13 @@ TEST(DriftTable, OneRowAnOutage) {
             "recording,imu,method,shift_s,outage,begin_unix_s,begin_gps_week,begin_gps_s,length_s,"
             "max_horizontal_m,"
             "max_vertical_m,end_horizontal_m,end_vertical_m,horizontal_10s_m,vertical_10s_m,"
-            "horizontal_20s_m,vertical_20s_m\n"
+            "horizontal_20s_m,vertical_20s_m,distance_km\n"
             "\"trip, "
             "first.rawlog\",ADIS16465,ekf,75,2,1646881782.300000000,2200,357000.300000000,60,10."
             "0000,2.0000,"
-            "10.0000,2.0000,5.0000,1.0000,,\n");
+            "10.0000,2.0000,5.0000,1.0000,,,\n");
+  record.drift.distance_m = 12345.6;
+  EXPECT_EQ(drift_record_table({record}, {10, 20}).rows[0].back(), "12.346");
 }
 
 TEST(TextTable, QuotesWhatItMust) {

@@ -82,6 +82,25 @@ struct OutageMap {
   std::vector<Estimate> estimates;
 };
 
+/// Drift against the distance from the start of the recording at which an outage begins.
+struct DistanceDrift {
+  /// The RMS of the largest drifts of some outages, at their mean distance.
+  struct Bin {
+    double distance_km = 0;
+    Bounded horizontal_m;
+    Bounded vertical_m;
+  };
+  struct Method {
+    std::string method;
+    std::vector<double> distance_km;  ///< an entry an outage
+    std::vector<double> horizontal_m;
+    std::vector<double> vertical_m;
+    std::vector<Bin> bins;
+  };
+  std::string name;  ///< of the case
+  std::vector<Method> methods;
+};
+
 /// Names of methods in the order of their colours; every figure gives a method the same colour.
 using MethodOrder = std::vector<std::string>;
 
@@ -95,6 +114,8 @@ Figure drift_distribution(const DriftCase& drift_case, const MethodOrder& order)
 Figure drift_growth(const DriftCase& drift_case, const MethodOrder& order);
 /// Table III as grouped bars with intervals.
 Figure drift_bars(const std::vector<DriftRms>& rms, const MethodOrder& order);
+/// Largest drift of each outage and its RMS in bins, on a logarithmic axis.
+Figure drift_by_distance(const DistanceDrift& drift, const MethodOrder& order);
 Figure error_timeline(const ErrorTimeline& timeline, const MethodOrder& order);
 Figure outage_map(const OutageMap& map, const MethodOrder& order);
 
@@ -125,13 +146,15 @@ struct EvaluationReport {
   std::vector<Table> tables;
   std::vector<DriftRms> rms;
   std::vector<DriftCase> cases;
+  std::vector<DistanceDrift> distances;  ///< if recordings go far enough
+  std::vector<Table> distance_tables;
   std::vector<ErrorTimeline> timelines;
   std::vector<OutageMap> maps;
   std::vector<Listing> listings;
   std::string footer;
 };
 
-/// The page: overview with tables and bars, then a section a case, then recordings.
+/// The page: overview with tables and bars, a section a case, distance, recordings.
 ReportPage evaluation_page(const EvaluationReport& report);
 
 }  // namespace foucault::reports

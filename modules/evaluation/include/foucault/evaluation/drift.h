@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
+#include <limits>
 #include <map>
 #include <optional>
 #include <vector>
@@ -37,6 +38,8 @@ struct OutageDrift {
   /// At each of the asked times; none where the outage is shorter or nothing was sampled near.
   std::vector<std::optional<DriftValue>> at_marks;
   std::vector<DriftSample> samples;  ///< in order of time
+  /// Straight line from the recording's first fix to the first one withheld [m]; NaN: unknown.
+  double distance_m = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// Times after the beginning of an outage at which its drift is reported [s].

@@ -60,8 +60,8 @@ struct DriftRecord {
 
 /// A row an outage and method. Columns: recording, imu, method, shift_s, outage (from 1),
 /// begin_unix_s, begin_gps_week, begin_gps_s, length_s, max_horizontal_m, max_vertical_m,
-/// end_horizontal_m, end_vertical_m, and horizontal_<mark>s_m, vertical_<mark>s_m for each mark;
-/// empty where there is no value.
+/// end_horizontal_m, end_vertical_m, horizontal_<mark>s_m, vertical_<mark>s_m for each mark, and
+/// distance_km; empty where there is no value.
 TextTable drift_record_table(const std::vector<DriftRecord>& records,
                              const std::vector<double>& marks_s);
 

@@ -75,12 +75,16 @@ class OutageSource : public Source {
   std::optional<int64_t> first_fix_ns() const { return first_fix_ns_; }
   std::optional<int64_t> last_fix_ns() const { return last_fix_ns_; }
 
+  /// Straight line from the first fix of the recording to this one [m]. NaN without a position.
+  double from_first_fix(const GnssFix& fix) const;
+
  private:
   std::unique_ptr<Source> source_;
   OutageSchedule schedule_;
   Withheld withheld_;
   std::optional<int64_t> first_fix_ns_;
   std::optional<int64_t> last_fix_ns_;
+  std::optional<Geodetic> first_position_;  ///< of the first fix that has one
 };
 
 }  // namespace foucault
