@@ -41,11 +41,6 @@ std::size_t class_of(double sigma) {
   return kClasses.size() - 1;
 }
 
-std::string coordinates(const Epoch& epoch) {
-  return fmt::format("{:.8f},{:.8f},{:.2f}\n", epoch.position.longitude * kDegrees,
-                     epoch.position.latitude * kDegrees, epoch.position.height);
-}
-
 std::string style(const AccuracyClass& accuracy) {
   return fmt::format(
       "<Style id=\"{}\"><LineStyle><color>{}</color><width>4</width></LineStyle>"
@@ -62,9 +57,20 @@ TrackKml::TrackKml(const std::filesystem::path& path) : file_(path) {
   for (const AccuracyClass& accuracy : kClasses) file_.write(style(accuracy));
 }
 
+TrackKml::Vertex TrackKml::vertex(const Geodetic& position) {
+  return {position.longitude * kDegrees, position.latitude * kDegrees, position.height};
+}
+
+std::string TrackKml::coordinates(const Vertex& vertex) {
+  return fmt::format("{:.8f},{:.8f},{:.2f}\n", vertex.longitude_deg, vertex.latitude_deg,
+                     vertex.height);
+}
+
 void TrackKml::epoch(const Epoch& epoch) {
   if (epoch.t_ns < next_vertex_ns_) return;
   next_vertex_ns_ = epoch.t_ns + kVertexInterval;
+  const Vertex next = vertex(epoch.position);
+  cut_at_antimeridian(next);
   const std::size_t accuracy_class = class_of(horizontal_sigma(epoch));
   if (epoch.t_ns >= next_mark_ns_) {
     end_line();
@@ -74,16 +80,31 @@ void TrackKml::epoch(const Epoch& epoch) {
     end_line();
     begin_line(accuracy_class);
   }
-  last_vertex_ = coordinates(epoch);
-  file_.write(last_vertex_);
+  last_vertex_ = next;
+  file_.write(coordinates(next));
   ++vertices_;
+}
+
+/// Ends the line on this side of the meridian; the next one begins on the other.
+void TrackKml::cut_at_antimeridian(const Vertex& next) {
+  if (!last_vertex_ || std::abs(next.longitude_deg - last_vertex_->longitude_deg) <= 180) return;
+  const Vertex& last = *last_vertex_;
+  const double side = last.longitude_deg > 0 ? 180 : -180;
+  const double next_longitude = next.longitude_deg + 2 * side;
+  const double share = (side - last.longitude_deg) / (next_longitude - last.longitude_deg);
+  Vertex edge{side, last.latitude_deg + share * (next.latitude_deg - last.latitude_deg),
+              last.height + share * (next.height - last.height)};
+  file_.write(coordinates(edge));
+  end_line();
+  edge.longitude_deg = -side;
+  last_vertex_ = edge;
 }
 
 void TrackKml::begin_line(std::size_t accuracy_class) {
   file_.write(
       fmt::format("<Placemark><styleUrl>#{}</styleUrl><LineString><tessellate>1</tessellate>"
                   "<coordinates>\n{}",
-                  kClasses[accuracy_class].id, last_vertex_));
+                  kClasses[accuracy_class].id, last_vertex_ ? coordinates(*last_vertex_) : ""));
   line_class_ = accuracy_class;
   vertices_ = 1;
 }
@@ -101,7 +122,7 @@ void TrackKml::mark(const Epoch& epoch) {
                   "standard deviation {:.3f} m</description><Point><coordinates>{}"
                   "</coordinates></Point></Placemark>\n",
                   format_utc(epoch.t_ns), epoch.velocity_n.head<2>().norm(),
-                  horizontal_sigma(epoch), coordinates(epoch)));
+                  horizontal_sigma(epoch), coordinates(vertex(epoch.position))));
 }
 
 void TrackKml::finish() {

@@ -12,7 +12,8 @@ namespace foucault::app {
 
 /// A track for Google Earth and other maps: lines coloured by the horizontal standard deviation of
 /// the position, a vertex every half second, and a mark with time, speed and accuracy every minute.
-/// Streams. Lines lie on the ground: the heights are ellipsoidal, and KML's are above the geoid.
+/// Streams. Lines are cut at the 180 deg meridian, which maps would else cross the long way round.
+/// They lie on the ground: the heights are ellipsoidal, and KML's are above the geoid.
 class TrackKml {
  public:
   explicit TrackKml(const std::filesystem::path& path);
@@ -21,6 +22,15 @@ class TrackKml {
   void finish();
 
  private:
+  struct Vertex {
+    double longitude_deg;
+    double latitude_deg;
+    double height;  ///< [m]
+  };
+
+  static Vertex vertex(const Geodetic& position);
+  static std::string coordinates(const Vertex& vertex);
+  void cut_at_antimeridian(const Vertex& next);
   void begin_line(std::size_t accuracy_class);
   void end_line();
   void mark(const Epoch& epoch);
@@ -28,7 +38,7 @@ class TrackKml {
   TextFile file_;
   std::optional<std::size_t> line_class_;  ///< of the line that is open
   int vertices_ = 0;
-  std::string last_vertex_;
+  std::optional<Vertex> last_vertex_;
   int64_t next_vertex_ns_ = 0;
   int64_t next_mark_ns_ = 0;
 };

@@ -146,6 +146,40 @@ TEST(SolutionWriter, WritesARowForEveryEpochAndAWholeKml) {
   EXPECT_EQ(count("<Point>"), 5);  // one a minute
 }
 
+/// Longitudes of each line of a KML file.
+std::vector<std::vector<double>> line_longitudes(const TestFolder& folder) {
+  std::vector<std::vector<double>> lines;
+  bool inside = false;
+  for (const std::string& row : folder.lines("solution.kml")) {
+    const bool begins = row.find("<LineString>") != std::string::npos;
+    if (begins) lines.emplace_back();
+    inside = begins || (inside && row.find("</coordinates>") == std::string::npos);
+    if (inside && !begins) lines.back().push_back(std::stod(row));
+  }
+  return lines;
+}
+
+TEST(SolutionWriter, TheTrackIsCutAtTheAntimeridian) {
+  for (const double side : {1.0, -1.0}) {
+    const TestFolder folder;
+    SolutionWriter writer(folder.path(), {});
+    Epoch epoch = some_epoch();
+    for (int i = 0; i <= 10; ++i) {
+      epoch.t_ns += 1'000'000'000;
+      epoch.position.longitude = so3::wrap(side * (179.9 + 0.03 * i) / kDegrees);
+      writer.epoch(epoch);
+    }
+    writer.finish();
+    const std::vector<std::vector<double>> lines = line_longitudes(folder);
+    ASSERT_EQ(lines.size(), 2u);
+    EXPECT_EQ(lines[0].size() + lines[1].size(), 13u);  // every epoch, and the ends at the meridian
+    EXPECT_EQ(lines[0].back(), side * 180);
+    EXPECT_EQ(lines[1].front(), -side * 180);
+    for (const double longitude : lines[0]) EXPECT_GT(side * longitude, 179);
+    for (const double longitude : lines[1]) EXPECT_LT(side * longitude, -179);
+  }
+}
+
 TEST(SolutionWriter, SaysWhichFileCannotBeWritten) {
   EXPECT_THROW(SolutionWriter("/no/such/folder", {}), DataError);
 }
