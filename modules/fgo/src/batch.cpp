@@ -1,88 +1,77 @@
 #include "foucault/fgo/batch.h"
 
+#include <cmath>
+#include <deque>
+
+#include "chain_problem.h"
 #include "foucault/fgo/chain.h"
 #include "node_epoch.h"
-#include "solving.h"
 
 namespace foucault {
 namespace {
 
-/// The chain as Ceres sees it.
-class BatchProblem {
+/// The chain with its factors.
+class BatchGraph {
  public:
-  BatchProblem(BatchChain& chain, const FgoOptions& options)
-      : chain_(chain),
-        options_(options),
-        loss_(make_loss(options)),
-        prior_(chain.prior),
-        blocks_(chain.nodes.size()),
-        fixes_(chain.nodes.size()),
-        problem_(problem_options()) {
-    for (std::size_t k = 0; k < blocks_.size(); ++k) add_node(k);
-    problem_.AddResidualBlock(&prior_, nullptr, blocks_.front().data());
-    for (std::size_t k = 0; k < chain.intervals.size(); ++k) add_interval(k);
+  BatchGraph(BatchChain& chain, const FgoOptions& options)
+      : chain_(chain), options_(options), loss_(make_loss(options)), prior_(chain.prior) {
+    for (const BatchNode& node : chain.nodes) {
+      x_.push_back(node.x);
+      std::deque<GnssFactor>& fixes = fixes_.emplace_back();
+      for (const LocalFix& fix : node.fixes) fixes.emplace_back(fix);
+    }
   }
 
-  void optimize() { foucault::optimize(problem_, options_); }
+  void optimize() {
+    ChainProblem problem(x_[0], prior_, loss_.get());
+    for (GnssFactor& fix : fixes_[0]) problem.add_fix(fix);
+    for (std::size_t k = 1; k < x_.size(); ++k) {
+      problem.add_node(x_[k], *chain_.intervals[k - 1].factor);
+      for (GnssFactor& fix : fixes_[k]) problem.add_fix(fix);
+    }
+    problem.optimize(options_);
+    for (std::size_t k = 0; k < x_.size(); ++k) x_[k] = problem.state(k);
+  }
 
   /// True if there were any.
   bool reintegrate_moved_biases(const ImuNoise& noise, PreintegrationModel model) {
     bool moved = false;
     for (std::size_t k = 0; k < chain_.intervals.size(); ++k) {
       ImuInterval& interval = chain_.intervals[k];
-      const ImuBias bias = state(k).bias;
+      const ImuBias& bias = x_[k].bias;
       if (interval.increments.empty() || !bias_moved(interval.factor->preintegration(), bias))
         continue;
-      problem_.RemoveResidualBlock(intervals_[k]);
       reintegrate(interval, bias, noise, model);
-      intervals_[k] = join(k);
       moved = true;
     }
     return moved;
   }
 
-  NodeState state(std::size_t k) const { return read_block(blocks_[k].data()); }
+  const std::vector<NodeState>& states() const { return x_; }
 
   /// What the node itself brings: its fixes, and the prior at the first.
   NodeInformation own_information(std::size_t k) const {
     NodeInformation out;
-    for (const std::unique_ptr<GnssFactor>& factor : fixes_[k]) {
-      const GnssFactor::Linearized fix = factor->linearize(state(k));
+    for (const GnssFactor& factor : fixes_[k]) {
+      const GnssFactor::Linearized fix = factor.linearize(x_[k]);
       out.add(fix, loss_weight(loss_.get(), fix));
     }
-    if (k == 0) out.add(prior_.linearize(state(0)));
+    if (k == 0) out.add(prior_.linearize(x_[0]));
     return out;
   }
 
   /// The interval from node k to k + 1.
   MotionResidual interval(std::size_t k) const {
-    return chain_.intervals[k].factor->linearize(state(k), state(k + 1));
+    return chain_.intervals[k].factor->linearize(x_[k], x_[k + 1]);
   }
 
  private:
-  void add_node(std::size_t k) {
-    write_block(chain_.nodes[k].x, blocks_[k].data());
-    problem_.AddParameterBlock(blocks_[k].data(), kStateBlockSize, &manifold_);
-    for (const LocalFix& fix : chain_.nodes[k].fixes) {
-      fixes_[k].push_back(std::make_unique<GnssFactor>(fix));
-      problem_.AddResidualBlock(fixes_[k].back().get(), loss_.get(), blocks_[k].data());
-    }
-  }
-  void add_interval(std::size_t k) { intervals_.push_back(join(k)); }
-  ceres::ResidualBlockId join(std::size_t k) {
-    return problem_.AddResidualBlock(chain_.intervals[k].factor.get(), nullptr, blocks_[k].data(),
-                                     blocks_[k + 1].data());
-  }
-
   BatchChain& chain_;
   const FgoOptions& options_;
   std::unique_ptr<ceres::LossFunction> loss_;
-  StateManifold manifold_;
   PriorFactor prior_;
-  std::vector<StateBlock> blocks_;
-  std::vector<std::vector<std::unique_ptr<GnssFactor>>> fixes_;
-  std::vector<ceres::ResidualBlockId> intervals_;
-  ceres::Problem problem_;  ///< last: refers to the members above
+  std::vector<NodeState> x_;
+  std::vector<std::deque<GnssFactor>> fixes_;  ///< of each node
 };
 
 MotionResidual reversed(const MotionResidual& interval) {
@@ -90,12 +79,13 @@ MotionResidual reversed(const MotionResidual& interval) {
 }
 
 /// Information on every node from all before it and from all behind it; their sum's inverse.
-std::vector<Matrix15d> covariances(const BatchProblem& problem, std::size_t nodes) {
+std::vector<Matrix15d> covariances(const BatchGraph& graph) {
+  const std::size_t nodes = graph.states().size();
   std::vector<Matrix15d> result(nodes);  // the information from before, until it is the covariance
   NodeInformation from_before;
   for (std::size_t k = 0; k < nodes; ++k) {
-    if (k > 0) from_before = eliminate(from_before, problem.interval(k - 1));
-    from_before.H += problem.own_information(k).H;
+    if (k > 0) from_before = eliminate(from_before, graph.interval(k - 1)).rest;
+    from_before.H += graph.own_information(k).H;
     result[k] = from_before.H;
   }
   NodeInformation from_behind;
@@ -104,8 +94,8 @@ std::vector<Matrix15d> covariances(const BatchProblem& problem, std::size_t node
     all.H += result[k];
     result[k] = covariance(all);
     if (k == 0) break;
-    from_behind.H += problem.own_information(k).H;
-    from_behind = eliminate(from_behind, reversed(problem.interval(k - 1)));
+    from_behind.H += graph.own_information(k).H;
+    from_behind = eliminate(from_behind, reversed(graph.interval(k - 1))).rest;
   }
   return result;
 }
@@ -125,13 +115,10 @@ PreintegrationModel BatchOptions::preintegration_model() const {
 
 BatchSolution solve(BatchChain& chain, const FgoOptions& options, PreintegrationModel model,
                     const ImuNoise& noise) {
-  BatchProblem problem(chain, options);
-  problem.optimize();
-  if (problem.reintegrate_moved_biases(noise, model)) problem.optimize();
-  BatchSolution solution;
-  for (std::size_t k = 0; k < chain.nodes.size(); ++k) solution.x.push_back(problem.state(k));
-  solution.covariance_w = covariances(problem, chain.nodes.size());
-  return solution;
+  BatchGraph graph(chain, options);
+  graph.optimize();
+  if (graph.reintegrate_moved_biases(noise, model)) graph.optimize();
+  return {graph.states(), covariances(graph)};
 }
 
 // The forward run -------------------------------------------------------------------------------

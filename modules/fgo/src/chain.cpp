@@ -24,18 +24,23 @@ void NodeInformation::add(const GnssFactor::Linearized& fix, double weight) {
   b.noalias() += weight * fix.J.transpose() * fix.r;
 }
 
-NodeInformation eliminate(const NodeInformation& first, const MotionResidual& interval) {
+Vector15d Elimination::eliminated(const Vector15d& next) const {
+  return L.triangularView<Eigen::Lower>().transpose().solve(-a - A * next);
+}
+
+Elimination eliminate(const NodeInformation& first, const MotionResidual& interval) {
   const Matrix15d H00 = first.H + interval.J_x0.transpose() * interval.J_x0;
   const Matrix15d H01 = interval.J_x0.transpose() * interval.J_x1;
   const Vector15d b0 = first.b + interval.J_x0.transpose() * interval.r;
   const Eigen::LLT<Matrix15d> llt = factorize(H00);
-  // H00 = L L^T, A = L^-1 H01: the complement is a difference of squares, symmetric by form.
-  const Matrix15d A = llt.matrixL().solve(H01);
-  const Vector15d a = llt.matrixL().solve(b0);
-  NodeInformation second;
-  second.H.noalias() = interval.J_x1.transpose() * interval.J_x1 - A.transpose() * A;
-  second.b.noalias() = interval.J_x1.transpose() * interval.r - A.transpose() * a;
-  return second;
+  Elimination out;
+  out.L = llt.matrixL();
+  out.A = llt.matrixL().solve(H01);
+  out.a = llt.matrixL().solve(b0);
+  // The complement is a difference of squares, symmetric by form.
+  out.rest.H.noalias() = interval.J_x1.transpose() * interval.J_x1 - out.A.transpose() * out.A;
+  out.rest.b.noalias() = interval.J_x1.transpose() * interval.r - out.A.transpose() * out.a;
+  return out;
 }
 
 SquareRootPrior to_prior(const NodeInformation& information, const NodeState& at) {

@@ -1,12 +1,25 @@
 #include "foucault/fgo/window_navigator.h"
 
-#include <stdexcept>
+#include <algorithm>
 
+#include "chain_problem.h"
 #include "foucault/core/time.h"
 #include "node_epoch.h"
-#include "solving.h"
 
 namespace foucault {
+namespace {
+
+/// What a turn d leaves out of the quadratic form is of second order: with 2e-4 rad, 2e-8 of a
+/// velocity increment and 0.02 % of a sigma.
+constexpr double kSettled = 2e-4;  // [rad]
+
+/// A robust loss weighs a fix by its residual: its node is settled while that is. [sigma]
+constexpr double kSettledResidual = 0.05;
+
+/// Each round solves a longer part of the window; the whole of it within a few.
+constexpr int kRounds = 8;
+
+}  // namespace
 
 WindowNavigator::WindowNavigator(const FgoOptions& options, PreintegrationModel model,
                                  const ImuNoise& noise)
@@ -15,29 +28,26 @@ WindowNavigator::WindowNavigator(const FgoOptions& options, PreintegrationModel 
 WindowNavigator::~WindowNavigator() = default;
 
 void WindowNavigator::start(const Epoch& initial) {
-  problem_ = std::make_unique<ceres::Problem>(problem_options());
   nodes_.clear();
   intervals_.clear();
   integrator_.reset();
   frame_.emplace(initial.position);
 
-  const NodeState x = to_node(initial, *frame_, model_);
   Node& node = nodes_.emplace_back();
   node.t_ns = initial.t_ns;
-  write_block(x, node.x.data());
-  problem_->AddParameterBlock(node.x.data(), kStateBlockSize, &manifold_);
+  node.x = to_node(initial, *frame_, model_);
   covariance_ = turned(initial.covariance, frame_->R_w_n(initial.position));
-  prior_block_ = nullptr;
-  set_prior(prior_from_covariance(x, covariance_));
+  prior_ = prior_from_covariance(node.x, covariance_);
+  linearize(0);
   begin_interval();
 }
 
 void WindowNavigator::begin_interval() {
-  open_ = Interval{};
+  open_ = ImuInterval{};
   if (integrator_) open_.before = integrator_->previous();
-  const NodeState x = last_state();
-  earth_ = earth_model(model_, *frame_, x.p_w_b);
-  integrator_.emplace(noise_, x.bias, nodes_.back().t_ns, open_.before);
+  const Node& node = nodes_.back();
+  earth_ = earth_model(model_, *frame_, node.x.p_w_b);
+  integrator_.emplace(noise_, node.x.bias, node.t_ns, open_.before);
 }
 
 void WindowNavigator::propagate(const ImuIncrement& increment) {
@@ -46,7 +56,7 @@ void WindowNavigator::propagate(const ImuIncrement& increment) {
 }
 
 WindowNavigator::Prediction WindowNavigator::prediction() const {
-  const NodeState x0 = last_state();
+  const NodeState& x0 = nodes_.back().x;
   if (at_node()) return {x0, covariance_};
   const Preintegration pre = measured(*integrator_, model_);
   const NodeState x1 = predict(x0, pre, earth_);
@@ -62,123 +72,136 @@ Innovation WindowNavigator::innovation(const GnssFix& fix) const {
   return {R_n_w * antenna_innovation(predicted.x, local), R_n_w * S * R_n_w.transpose()};
 }
 
-void WindowNavigator::update(const GnssFix& fix) {
-  if (!at_node()) add_node();
-  Node& node = nodes_.back();
-  node.forward.reset();
-  node.fixes.push_back(std::make_unique<GnssFactor>(to_local(fix, *frame_)));
-  problem_->AddResidualBlock(node.fixes.back().get(), loss_.get(), node.x.data());
-  solve();
-}
-
-void WindowNavigator::hold() {
-  if (at_node()) return;
-  covariance_ = prediction().covariance;
-  add_node();
-  marginalize_old();
-}
-
 Epoch WindowNavigator::epoch() const {
   const Prediction now = prediction();
   return to_epoch(integrator_->t_end_ns(), now.x, now.covariance, *frame_, model_);
 }
 
-void WindowNavigator::add_node() {
-  const Preintegration pre = measured(*integrator_, model_);
-  const NodeState x = predict(last_state(), pre, earth_);
-  open_.factor = std::make_unique<PreintegrationFactor>(pre, earth_);
-  double* const previous = nodes_.back().x.data();
-
-  Node& node = nodes_.emplace_back();
-  node.t_ns = pre.t_end_ns;
-  write_block(x, node.x.data());
-  problem_->AddParameterBlock(node.x.data(), kStateBlockSize, &manifold_);
-  open_.block = problem_->AddResidualBlock(open_.factor.get(), nullptr, previous, node.x.data());
-  intervals_.push_back(std::move(open_));
-  begin_interval();
-}
-
-void WindowNavigator::solve() {
-  optimize(*problem_, options_);
-  if (reintegrate_moved_biases()) optimize(*problem_, options_);
-  update_covariance();
+void WindowNavigator::update(const GnssFix& fix) {
+  if (!at_node()) {
+    const Preintegration pre = measured(*integrator_, model_);
+    add_node(predict(nodes_.back().x, pre, earth_), pre);
+  }
+  nodes_.back().fixes.emplace_back(to_local(fix, *frame_));
+  solve();
   marginalize_old();
   begin_interval();  // at the bias just estimated
 }
 
-bool WindowNavigator::reintegrate_moved_biases() {
-  bool moved = false;
-  for (std::size_t i = 0; i < intervals_.size(); ++i) {
-    Interval& interval = intervals_[i];
-    const ImuBias bias = read_block(nodes_[i].x.data()).bias;
-    if (!bias_moved(interval.factor->preintegration(), bias)) continue;
-    problem_->RemoveResidualBlock(interval.block);
-    reintegrate(interval, bias, noise_, model_);
-    interval.block = problem_->AddResidualBlock(interval.factor.get(), nullptr, nodes_[i].x.data(),
-                                                nodes_[i + 1].x.data());
-    nodes_[i + 1].forward.reset();
-    moved = true;
+/// A node without a fix brings no information: there is nothing to solve.
+void WindowNavigator::hold() {
+  if (at_node()) return;
+  const Prediction now = prediction();
+  add_node(now.x, measured(*integrator_, model_));
+  linearize(nodes_.size() - 1);
+  marginalize_old();
+  begin_interval();
+}
+
+void WindowNavigator::add_node(const NodeState& x, const Preintegration& pre) {
+  open_.factor = std::make_unique<PreintegrationFactor>(pre, earth_);
+  Node& node = nodes_.emplace_back();
+  node.t_ns = pre.t_end_ns;
+  node.x = x;
+  static_cast<ImuInterval&>(intervals_.emplace_back()) = std::move(open_);
+}
+
+/// The newest node has changed; all before it are linearized.
+void WindowNavigator::solve() {
+  std::size_t from = nodes_.size() - 1;
+  for (int round = 0; round < kRounds && from < nodes_.size(); ++round) {
+    optimize(from);
+    linearize(from);
+    carry_back(from);
+    from = first_unsettled();
   }
-  return moved;
 }
 
-void WindowNavigator::marginalize_old() {
-  const auto length_s = [this] { return seconds_between(nodes_.front().t_ns, nodes_.back().t_ns); };
-  while (nodes_.size() > 1 && length_s() > options_.window_s) marginalize_first();
+/// Solves for the nodes from `from` on, and for the settled one before them.
+void WindowNavigator::optimize(std::size_t from) {
+  const std::size_t base = from > 0 ? from - 1 : 0;
+  PriorFactor prior(from > 0 ? to_prior(nodes_[base].past.information, nodes_[base].past.at)
+                             : prior_);
+  ChainProblem problem(nodes_[base].x, prior, loss_.get());
+  for (std::size_t k = base; k < nodes_.size(); ++k) {
+    if (k > base) problem.add_node(nodes_[k].x, *intervals_[k - 1].factor);
+    if (k < from) continue;  // its fixes are in the prior
+    for (GnssFactor& fix : nodes_[k].fixes) problem.add_fix(fix);
+  }
+  problem.optimize(options_);
+  for (std::size_t k = base; k < nodes_.size(); ++k) nodes_[k].x = problem.state(k - base);
 }
 
-void WindowNavigator::marginalize_first() {
-  const NodeState x0 = read_block(nodes_[0].x.data());
-  const NodeState x1 = read_block(nodes_[1].x.data());
-  NodeInformation first = information(nodes_[0]);
-  first.add(prior_->linearize(x0));
-  const NodeInformation rest = eliminate(first, intervals_.front().factor->linearize(x0, x1));
-  problem_->RemoveParameterBlock(nodes_.front().x.data());
-  prior_block_ = nullptr;  // went with its parameter block
-  intervals_.pop_front();
-  nodes_.pop_front();
-  set_prior(to_prior(rest, x1));
+/// The quadratic forms of the nodes from `from` on, each at its present state.
+void WindowNavigator::linearize(std::size_t from) {
+  for (std::size_t k = from; k < nodes_.size(); ++k) {
+    Node& node = nodes_[k];
+    node.past = {node.x, own_information(node)};
+    if (k == 0) {
+      node.past.information.add(PriorFactor(prior_).linearize(node.x));
+      continue;
+    }
+    const Linearization& before = nodes_[k - 1].past;
+    Interval& interval = intervals_[k - 1];
+    interval.elimination =
+        eliminate(before.information, interval.factor->linearize(before.at, node.x));
+    node.past.information.H += interval.elimination.rest.H;
+    node.past.information.b += interval.elimination.rest.b;
+  }
+  covariance_ = covariance(nodes_.back().past.information);
 }
 
-void WindowNavigator::set_prior(const SquareRootPrior& prior) {
-  if (prior_block_ != nullptr) problem_->RemoveResidualBlock(prior_block_);
-  prior_ = std::make_unique<PriorFactor>(prior);
-  prior_block_ = problem_->AddResidualBlock(prior_.get(), nullptr, nodes_.front().x.data());
-}
-
-NodeInformation WindowNavigator::information(const Node& node) const {
+NodeInformation WindowNavigator::own_information(const Node& node) const {
   NodeInformation out;
-  const NodeState x = read_block(node.x.data());
-  for (const std::unique_ptr<GnssFactor>& factor : node.fixes) {
-    const GnssFactor::Linearized fix = factor->linearize(x);
+  for (const GnssFactor& factor : node.fixes) {
+    const GnssFactor::Linearized fix = factor.linearize(node.x);
     out.add(fix, loss_weight(loss_.get(), fix));
   }
   return out;
 }
 
-/// Information on each node from all before it, kept from epoch to epoch. It depends on the
-/// estimates by their attitudes alone, and to first order; a node that has not turned by kSettled
-/// keeps what it has, so that an epoch costs little more than its own node.
-void WindowNavigator::update_covariance() {
-  constexpr double kSettled = 2e-4;  // [rad]: 0.02 % of a sigma
-  bool moved = false;
-  for (std::size_t i = 0; i < nodes_.size(); ++i) {
-    Node& node = nodes_[i];
-    const NodeState x = read_block(node.x.data());
-    moved = moved || !node.forward || x.q_w_b.angularDistance(node.forward->attitude) > kSettled;
-    if (!moved) continue;
-    NodeInformation info = information(node);
-    if (i == 0) {
-      info.add(prior_->linearize(x));
-    } else {
-      const NodeState before = read_block(nodes_[i - 1].x.data());
-      const NodeInformation carried = eliminate(nodes_[i - 1].forward->information,
-                                                intervals_[i - 1].factor->linearize(before, x));
-      info.H += carried.H;
-    }
-    node.forward = Node::Forward{info, x.q_w_b};
+/// The states before `from` that go with those behind.
+void WindowNavigator::carry_back(std::size_t from) {
+  if (from < 2) return;
+  const Node& base = nodes_[from - 1];
+  Vector15d d = boxminus(base.x, base.past.at);
+  for (std::size_t k = from - 1; k-- > 0;) {
+    d = intervals_[k].elimination.eliminated(d);
+    nodes_[k].x = boxplus(nodes_[k].past.at, d);
   }
-  covariance_ = covariance(nodes_.back().forward->information);
+}
+
+/// The first node whose quadratic form does not hold any more; the number of nodes if all do.
+/// Intervals whose bias has moved are integrated again.
+std::size_t WindowNavigator::first_unsettled() {
+  std::size_t first = nodes_.size();
+  for (std::size_t k = nodes_.size(); k-- > 0;) {
+    const Node& node = nodes_[k];
+    if (k < intervals_.size() && bias_moved(intervals_[k].factor->preintegration(), node.x.bias)) {
+      reintegrate(intervals_[k], node.x.bias, noise_, model_);
+      first = k + 1;
+    }
+    if (has_moved(node)) first = k;
+  }
+  return first;
+}
+
+bool WindowNavigator::has_moved(const Node& node) const {
+  if (node.x.q_w_b.angularDistance(node.past.at.q_w_b) > kSettled) return true;
+  if (!loss_) return false;
+  return std::any_of(node.fixes.begin(), node.fixes.end(), [&](const GnssFactor& fix) {
+    const Eigen::Vector3d change = fix.linearize(node.x).r - fix.linearize(node.past.at).r;
+    return change.norm() > kSettledResidual;
+  });
+}
+
+void WindowNavigator::marginalize_old() {
+  while (nodes_.size() > 1 &&
+         seconds_between(nodes_.front().t_ns, nodes_.back().t_ns) > options_.window_s) {
+    prior_ = to_prior(intervals_.front().elimination.rest, nodes_[1].past.at);
+    nodes_.pop_front();
+    intervals_.pop_front();
+  }
 }
 
 }  // namespace foucault

@@ -42,7 +42,7 @@ class Chain : public ::testing::Test {
   NodeInformation eliminated() const {
     NodeInformation info;
     info.add(first_);
-    for (const MotionResidual& interval : intervals_) info = eliminate(info, interval);
+    for (const MotionResidual& interval : intervals_) info = eliminate(info, interval).rest;
     return info;
   }
 
@@ -64,6 +64,22 @@ TEST_F(Chain, SolutionOfTheLastNodeIsTheDenseOne) {
   const NodeInformation info = eliminated();
   const Vector15d last = -info.H.ldlt().solve(info.b);
   EXPECT_LT((last - d.tail<15>()).norm(), 1e-8 * d.norm());
+}
+
+TEST_F(Chain, EliminatedNodesFollowTheLast) {
+  const Eigen::VectorXd dense = -J_.colPivHouseholderQr().solve(r_);
+  std::vector<Elimination> steps;
+  NodeInformation info;
+  info.add(first_);
+  for (const MotionResidual& interval : intervals_) {
+    steps.push_back(eliminate(info, interval));
+    info = steps.back().rest;
+  }
+  Vector15d d = dense.tail<15>();
+  for (int k = kNodes - 1; k-- > 0;) {
+    d = steps[k].eliminated(d);
+    EXPECT_LT((d - dense.segment<15>(15 * k)).norm(), 1e-8 * dense.norm()) << "node " << k;
+  }
 }
 
 TEST_F(Chain, SquareRootPriorHoldsTheSameInformation) {

@@ -19,9 +19,21 @@ struct NodeInformation {
   void add(const GnssFactor::Linearized& fix, double weight = 1);
 };
 
-/// Information on the node behind the interval when the one before it is eliminated (Schur
-/// complement). Throws std::runtime_error if the eliminated node is not determined.
-NodeInformation eliminate(const NodeInformation& first, const MotionResidual& interval);
+/// A node eliminated from the chain (Schur complement): what it leaves on the next, and its own
+/// best value for any value of that one. With H00 = L L^T of the two nodes' normal equations, A =
+/// L^-1 H01 and a = L^-1 b0.
+struct Elimination {
+  NodeInformation rest;
+  Matrix15d L;  ///< lower triangular
+  Matrix15d A;
+  Vector15d a;
+
+  /// Tangent of the eliminated node that minimizes the cost when the next one's is `next`.
+  Vector15d eliminated(const Vector15d& next) const;
+};
+
+/// Throws std::runtime_error if the eliminated node is not determined.
+Elimination eliminate(const NodeInformation& first, const MotionResidual& interval);
 
 /// The square-root form at the linearization point `at`; H = S^T S, b = S^T r.
 SquareRootPrior to_prior(const NodeInformation& information, const NodeState& at);

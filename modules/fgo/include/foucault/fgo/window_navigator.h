@@ -1,19 +1,16 @@
 #pragma once
 
 #include <ceres/loss_function.h>
-#include <ceres/problem.h>
 
 #include <deque>
 #include <memory>
 #include <optional>
-#include <vector>
 
 #include "foucault/fgo/chain.h"
 #include "foucault/fgo/fgo_options.h"
 #include "foucault/fgo/gnss_factor.h"
 #include "foucault/fgo/imu_interval.h"
 #include "foucault/fgo/prior_factor.h"
-#include "foucault/fgo/state_block.h"
 #include "foucault/inertial/navigator.h"
 
 namespace foucault {
@@ -21,9 +18,15 @@ namespace foucault {
 /// GNSS/INS by sliding-window factor graph optimization, paper section IV.
 ///
 /// A node stands at every fix and at every hold(); neighbours are joined by a preintegration
-/// factor; the window (48) is solved by Ceres at every fix. A node added by hold() brings no
-/// information, so nothing is solved there. Nodes older than window_s are marginalized into a
-/// square-root prior. w is the NED at the place of start().
+/// factor; the cost (48) over the window is minimized at every fix. Nodes older than window_s are
+/// marginalized into a square-root prior. w is the NED at the place of start().
+///
+/// Only what changed is solved again. The factors are linear but for the attitudes, so the part of
+/// the window whose attitudes stay within kSettled of where it was linearized is summed up by its
+/// quadratic form, which elimination along the chain leaves on its last node: Ceres gets that form
+/// as a prior and the nodes behind it. Its result is carried back through the settled part; where
+/// an attitude leaves kSettled, or a bias asks for a new integration, the window is solved again
+/// from there on. After a start or an outage that is the whole window, in calm times two nodes.
 class WindowNavigator final : public Navigator {
  public:
   WindowNavigator(const FgoOptions& options, PreintegrationModel model, const ImuNoise& noise);
@@ -39,19 +42,20 @@ class WindowNavigator final : public Navigator {
   std::size_t nodes() const { return nodes_.size(); }
 
  private:
-  struct Node {
-    /// What the past and this node's fixes say of it, linearized at an attitude.
-    struct Forward {
-      NodeInformation information;
-      Eigen::Quaterniond attitude;
-    };
-    int64_t t_ns = 0;
-    StateBlock x{};
-    std::vector<std::unique_ptr<GnssFactor>> fixes;
-    std::optional<Forward> forward;
+  /// What the past and the node's own fixes say of it, as a quadratic form at a state.
+  struct Linearization {
+    NodeState at;
+    NodeInformation information;
   };
+  struct Node {
+    int64_t t_ns = 0;
+    NodeState x;
+    std::deque<GnssFactor> fixes;
+    Linearization past;
+  };
+  /// Between a node and the next.
   struct Interval : ImuInterval {
-    ceres::ResidualBlockId block = nullptr;
+    Elimination elimination;  ///< of the node before it, at the linearizations of both
   };
   struct Prediction {
     NodeState x;
@@ -59,34 +63,31 @@ class WindowNavigator final : public Navigator {
   };
 
   void begin_interval();
-  void add_node();
-  void solve();
-  bool reintegrate_moved_biases();
-  void marginalize_old();
-  void marginalize_first();
-  void set_prior(const SquareRootPrior& prior);
-  NodeInformation information(const Node& node) const;
-  void update_covariance();
   Prediction prediction() const;
-  NodeState last_state() const { return read_block(nodes_.back().x.data()); }
+  void add_node(const NodeState& x, const Preintegration& pre);
+  void solve();
+  void optimize(std::size_t from);
+  void linearize(std::size_t from);
+  void carry_back(std::size_t from);
+  std::size_t first_unsettled();
+  bool has_moved(const Node& node) const;
+  NodeInformation own_information(const Node& node) const;
+  void marginalize_old();
   bool at_node() const { return integrator_->dt() == 0; }
 
   FgoOptions options_;
   PreintegrationModel model_;
   ImuNoise noise_;
-  StateManifold manifold_;
   std::unique_ptr<ceres::LossFunction> loss_;
 
   std::optional<LocalFrame> frame_;
   EarthModel earth_;  ///< of the interval from the newest node on
   std::deque<Node> nodes_;
-  std::deque<Interval> intervals_;  ///< one less than nodes
-  std::unique_ptr<PriorFactor> prior_;
-  ceres::ResidualBlockId prior_block_ = nullptr;
+  std::deque<Interval> intervals_;            ///< one less than nodes
+  SquareRootPrior prior_;                     ///< on the first node, without its fixes
   std::optional<Preintegrator> integrator_;   ///< from the newest node on
-  Interval open_;                             ///< its increments
+  ImuInterval open_;                          ///< its increments
   Matrix15d covariance_ = Matrix15d::Zero();  ///< of the newest node
-  std::unique_ptr<ceres::Problem> problem_;   ///< last: refers to the members above
 };
 
 }  // namespace foucault

@@ -37,7 +37,7 @@ Vector15d boxminus(const NodeState& y, const NodeState& x);
 ///   r_q = log(dq^-1 q0^-1 Exp(w T) q1)                                                    (22)
 ///   r_b = b1 - b - decay (b0 - b),  b and decay those of the preintegration                (49)
 /// To first order in w this is (25), (28) with (29). Exact in w T; what is left out is the turning
-/// of G' with w and the change of G along the way: below 1e-9 m for 1 s at 250 m/s, 3 cm for 60 s.
+/// of G' with w and the change of G along the way: below 3 nm for 1 s at 250 m/s, 4 cm for 60 s.
 /// All rows are true minus measured, as the errors of the preintegration are: (49) as printed has
 /// the opposite sign in its attitude row, which would turn its correlations with the others.
 /// The Jacobians are exact derivatives of these expressions; s is not corrected for the biases.

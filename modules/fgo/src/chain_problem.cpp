@@ -1,4 +1,7 @@
-#include "solving.h"
+#include "chain_problem.h"
+
+#include <ceres/iteration_callback.h>
+#include <ceres/solver.h>
 
 #include <cmath>
 #include <stdexcept>
@@ -6,9 +9,13 @@
 namespace foucault {
 namespace {
 
-ceres::Solver::Options solver_options(const FgoOptions& options) {
+/// Up to so many nodes a dense factorization is the faster one.
+constexpr std::size_t kDenseNodes = 4;
+
+ceres::Solver::Options solver_options(const FgoOptions& options, std::size_t nodes) {
   ceres::Solver::Options solver;
-  solver.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
+  solver.linear_solver_type =
+      nodes > kDenseNodes ? ceres::SPARSE_NORMAL_CHOLESKY : ceres::DENSE_NORMAL_CHOLESKY;
   solver.trust_region_strategy_type = ceres::LEVENBERG_MARQUARDT;
   solver.initial_trust_region_radius = 1e16;  // the start is good: plain Gauss-Newton steps
   solver.max_trust_region_radius = 1e32;
@@ -36,6 +43,14 @@ class StopWhenModelHolds final : public ceres::IterationCallback {
   }
 };
 
+ceres::Problem::Options problem_options() {
+  ceres::Problem::Options options;
+  options.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  options.manifold_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  return options;
+}
+
 }  // namespace
 
 std::unique_ptr<ceres::LossFunction> make_loss(const FgoOptions& options) {
@@ -51,21 +66,33 @@ double loss_weight(const ceres::LossFunction* loss, const GnssFactor::Linearized
   return rho[1];
 }
 
-ceres::Problem::Options problem_options() {
-  ceres::Problem::Options options;
-  options.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-  options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-  options.manifold_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-  options.enable_fast_removal = true;
-  return options;
+ChainProblem::ChainProblem(const NodeState& first, PriorFactor& prior, ceres::LossFunction* loss)
+    : loss_(loss), problem_(problem_options()) {
+  problem_.AddResidualBlock(&prior, nullptr, add_block(first));
 }
 
-void optimize(ceres::Problem& problem, const FgoOptions& options) {
+double* ChainProblem::add_block(const NodeState& x) {
+  StateBlock& block = blocks_.emplace_back();
+  write_block(x, block.data());
+  problem_.AddParameterBlock(block.data(), kStateBlockSize, &manifold_);
+  return block.data();
+}
+
+void ChainProblem::add_node(const NodeState& x, PreintegrationFactor& interval) {
+  double* const before = blocks_.back().data();
+  problem_.AddResidualBlock(&interval, nullptr, before, add_block(x));
+}
+
+void ChainProblem::add_fix(GnssFactor& fix) {
+  problem_.AddResidualBlock(&fix, loss_, blocks_.back().data());
+}
+
+void ChainProblem::optimize(const FgoOptions& options) {
   StopWhenModelHolds stop;
-  ceres::Solver::Options solver = solver_options(options);
+  ceres::Solver::Options solver = solver_options(options, size());
   solver.callbacks.push_back(&stop);
   ceres::Solver::Summary summary;
-  ceres::Solve(solver, &problem, &summary);
+  ceres::Solve(solver, &problem_, &summary);
   if (!summary.IsSolutionUsable())
     throw std::runtime_error("the factor graph could not be solved: " + summary.message);
 }
