@@ -6,6 +6,7 @@
 
 #include "foucault/reports/evaluation_report.h"
 #include "foucault/reports/ticks.h"
+#include "map_unit.h"
 
 namespace foucault::reports {
 namespace {
@@ -544,6 +545,7 @@ Figure outage_map(const OutageMap& map, const MethodOrder& order) {
     panel.series.push_back(path_series(estimate.path, estimate.method, look.ink, 1.6));
     panel.series.back().dashed = look.dashed;
   }
+  choose_map_unit(panel);
   Figure figure;
   figure.name = "outage_map_" + file_part(map.name);
   figure.title = "Ground track with outages";

@@ -8,6 +8,7 @@
 
 #include "axis_scale.h"
 #include "foucault/reports/ticks.h"
+#include "map_unit.h"
 
 namespace foucault::reports {
 namespace {
@@ -346,6 +347,7 @@ std::optional<Figure> ground_track(const RunData& data, const std::string& subti
     panel.series.back().range_role = RangeRole::typical;
   }
   mark_ends(estimate, panel);
+  choose_map_unit(panel);
 
   Figure figure;
   figure.name = "ground_track";

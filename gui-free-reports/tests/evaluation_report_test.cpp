@@ -201,6 +201,15 @@ TEST(EvaluationFigures, DistancesShowEveryOutageAndTheBinsOnTop) {
   }
 }
 
+TEST(EvaluationFigures, MapsThatReachFarAreInKilometres) {
+  EXPECT_EQ(outage_map(made_up_map(), kMethods).panels[0].x.shown_unit, "");
+  OutageMap far = made_up_map();
+  far.truth.north_m.back() = 21e3;
+  const Panel panel = outage_map(far, kMethods).panels[0];
+  EXPECT_EQ(panel.x.shown_unit, "km");
+  EXPECT_EQ(panel.y.shown_factor, 1e-3);
+}
+
 TEST(EvaluationFigures, SurviveEmptyResults) {
   const DriftCase empty{"none", {{"ekf", {}}}};
   for (const Figure& figure :
