@@ -13,7 +13,7 @@ namespace foucault::rawlog {
 
 namespace fs = std::filesystem;
 
-GzHandle open_for_reading(const std::string& path) {
+void check_readable(const std::string& path) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
   if (!fs::exists(status)) {
@@ -25,6 +25,10 @@ GzHandle open_for_reading(const std::string& path) {
   if (fs::is_regular_file(status) && fs::file_size(path, error) == 0 && !error) {
     throw DataError(fmt::format("'{}' is empty", path));
   }
+}
+
+GzHandle open_for_reading(const std::string& path) {
+  check_readable(path);
   GzHandle handle(gzopen(path.c_str(), "rb"));
   if (!handle) {
     throw DataError(fmt::format("'{}' cannot be read: {}", path, std::strerror(errno)));

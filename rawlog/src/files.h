@@ -14,8 +14,11 @@ struct GzClose {
 };
 using GzHandle = std::unique_ptr<gzFile_s, GzClose>;
 
+/// Throws DataError if there is no such file, or it is a directory or empty.
+void check_readable(const std::string& path);
+
 /// Opens a file for reading, gzip or plain.
-/// Throws DataError if it is missing, no regular file, empty or cannot be opened.
+/// Throws DataError as check_readable, or if it cannot be opened.
 GzHandle open_for_reading(const std::string& path);
 
 /// A file that appears under its name whole or not at all: written beside, renamed by commit(),

@@ -73,21 +73,8 @@ mrpt::poses::CPose3D to_mrpt(const SensorPose& pose) {
 
 Eigen::Quaterniond flip_both(const Eigen::Quaterniond& q) { return {q.w(), q.x(), -q.y(), -q.z()}; }
 
-std::optional<ImuSample> decode_imu(const mrpt::obs::CObservationIMU& imu, int64_t t_ns) {
-  using namespace mrpt::obs;  // the names of the indices: angular rates are stored yaw first
-  for (const TIMUDataIndex index : {IMU_X_ACC, IMU_Y_ACC, IMU_Z_ACC, IMU_WX, IMU_WY, IMU_WZ}) {
-    if (!imu.dataIsPresent[index]) return std::nullopt;
-  }
-  const auto& raw = imu.rawMeasurements;
-  ImuSample sample;
-  sample.t_ns = t_ns;
-  sample.gyro_b = {raw[IMU_WX], raw[IMU_WY], raw[IMU_WZ]};
-  sample.accel_b = {raw[IMU_X_ACC], raw[IMU_Y_ACC], raw[IMU_Z_ACC]};
-  return sample;
-}
-
 void encode_imu(const ImuSample& sample, mrpt::obs::CObservationIMU& imu) {
-  using namespace mrpt::obs;
+  using namespace mrpt::obs;  // the names of the indices: angular rates are stored yaw first
   imu.timestamp = to_mrpt(sample.t_ns);
   imu.set(IMU_WX, sample.gyro_b.x());
   imu.set(IMU_WY, sample.gyro_b.y());

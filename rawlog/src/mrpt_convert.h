@@ -36,8 +36,6 @@ mrpt::poses::CPose3D to_mrpt(const SensorPose& pose);
 /// forward-right-down counterparts (and back: it is its own inverse).
 Eigen::Quaterniond flip_both(const Eigen::Quaterniond& q);
 
-/// None if the gyroscope or the accelerometer is missing.
-std::optional<ImuSample> decode_imu(const mrpt::obs::CObservationIMU& imu, int64_t t_ns);
 void encode_imu(const ImuSample& sample, mrpt::obs::CObservationIMU& imu);
 
 /// The position that a GPS record holds, without lever arm; none if it holds none.

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "foucault/core/error.h"
 #include "mrpt_convert.h"
 #include "rawlog_stream.h"
 
@@ -139,15 +138,15 @@ class Collector {
   explicit Collector(RawlogInfo& info) : info_(info) {}
 
   void add(const LoggedObservation& logged) {
-    const mrpt::obs::CObservation& observation = *logged.observation;
-    const std::optional<int64_t> t_ns = rawlog::from_mrpt(observation.timestamp);
     info_.sensory_frames = info_.sensory_frames || logged.in_frame;
-    statistics(observation).add(t_ns);
-    if (const auto* imu = dynamic_cast<const mrpt::obs::CObservationIMU*>(&observation)) {
-      add_imu(*imu);
-    } else if (const auto* gps = dynamic_cast<const mrpt::obs::CObservationGPS*>(&observation)) {
-      add_gps(*gps);
+    if (!logged.imu && !logged.observation) {
+      ++info_.other_records[std::string(logged.type)];
+      return;
     }
+    statistics(logged).add(logged.t_ns);
+    if (logged.imu) return add_imu(*logged.imu);
+    const auto* gps = dynamic_cast<const mrpt::obs::CObservationGPS*>(logged.observation.get());
+    if (gps != nullptr) add_gps(*gps, logged.t_ns.value_or(0));
   }
 
   void finish() {
@@ -165,28 +164,28 @@ class Collector {
     bool has_sigma = false;
   };
 
-  StreamStatistics& statistics(const mrpt::obs::CObservation& observation) {
-    const std::string type = rawlog::class_name(observation);
-    const auto key = std::make_pair(observation.sensorLabel, type);
-    return streams_.try_emplace(key, observation.sensorLabel, type).first->second;
+  StreamStatistics& statistics(const LoggedObservation& logged) {
+    const std::string label(logged.label());
+    const std::string type(logged.type);
+    return streams_.try_emplace({label, type}, label, type).first->second;
   }
 
-  void add_imu(const mrpt::obs::CObservationIMU& imu) {
-    const std::optional<ImuSample> sample = rawlog::decode_imu(imu, 0);
-    if (!sample) return;
+  void add_imu(const rawlog::ImuRecord& imu) {
+    if (!imu.sample) return;
     if (!imu_pose_) {
-      imu_pose_ = rawlog::from_mrpt(imu.sensorPose);
-      info_.imu_label = imu.sensorLabel;
+      imu_pose_ = rawlog::from_mrpt(rawlog::pose_of(imu));
+      info_.imu_label = imu.label;
       info_.mounting = Mounting{imu_pose_->q_v_s};
     }
-    if (!sample->gyro_b.allFinite() || !sample->accel_b.allFinite()) ++info_.imu_not_finite;
+    if (imu.sample->gyro_b.allFinite() && imu.sample->accel_b.allFinite()) return;
+    if (info_.imu_not_finite++ == 0) info_.first_imu_not_finite_ns = imu.t_ns.value_or(0);
   }
 
-  void add_gps(const mrpt::obs::CObservationGPS& gps) {
+  void add_gps(const mrpt::obs::CObservationGPS& gps, int64_t t_ns) {
     if (rawlog::decode_reference(gps, 0)) return;
     Receiver& receiver = receivers_[gps.sensorLabel];
     receiver.info.label = gps.sensorLabel;
-    const std::optional<GnssFix> fix = rawlog::decode_fix(gps, 0, true);
+    const std::optional<GnssFix> fix = rawlog::decode_fix(gps, t_ns, true);
     if (!fix) {
       ++receiver.info.without_position;
       return;
@@ -197,6 +196,11 @@ class Collector {
 
   static void add_fix(const GnssFix& fix, Receiver& receiver) {
     GnssInfo& info = receiver.info;
+    if (!std::isfinite(fix.antenna.latitude) || !std::isfinite(fix.antenna.longitude) ||
+        !std::isfinite(fix.antenna.height)) {
+      if (info.not_finite++ == 0) info.first_not_finite_ns = fix.t_ns;
+      return;
+    }
     if (info.qualities.empty()) info.first = fix.antenna;
     info.last = fix.antenna;
     ++info.qualities[fix.quality];
@@ -228,21 +232,17 @@ RawlogInfo read_rawlog_info(const std::string& path, const std::function<void(do
   rawlog::RawlogStream stream(path);
   Collector collector(info);
   int64_t observations = 0;
-  try {
-    while (const std::optional<LoggedObservation> logged = stream.next()) {
-      collector.add(*logged);
-      if (progress && ++observations % kObservationsPerReport == 0) progress(stream.progress());
-    }
-  } catch (const DataError& error) {
-    if (stream.records() == 0) throw;
-    info.damage = error.what();
+  while (const std::optional<LoggedObservation> logged = stream.next()) {
+    collector.add(*logged);
+    if (progress && ++observations % kObservationsPerReport == 0) progress(stream.progress());
   }
   collector.finish();
   info.path = path;
   info.file_bytes = static_cast<int64_t>(stream.file_size());
   info.compressed = stream.compressed();
   info.records = stream.records();
-  info.other_records = stream.other_records();
+  info.damage = stream.damage();
+  for (const auto& [type, count] : stream.other_records()) info.other_records[type] += count;
   if (progress) progress(1);
   return info;
 }

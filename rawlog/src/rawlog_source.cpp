@@ -6,6 +6,7 @@
 #include <cmath>
 #include <deque>
 #include <limits>
+#include <string_view>
 
 #include "foucault/core/error.h"
 #include "foucault/core/time.h"
@@ -28,6 +29,11 @@ void RawlogOptions::fields(ConfigFields& f) {
 
 namespace {
 
+constexpr std::string_view kImu = "CObservationIMU";
+constexpr std::string_view kGps = "CObservationGPS";
+constexpr std::string_view kOdometry = "CObservationOdometry";
+constexpr std::string_view kNotFinite = "not finite";
+
 /// What must be known of a log before its first measurement.
 struct Overview {
   std::string imu_label;
@@ -41,8 +47,22 @@ const mrpt::obs::CObservationGPS* as_gps(const LoggedObservation& logged) {
   return dynamic_cast<const mrpt::obs::CObservationGPS*>(logged.observation.get());
 }
 
-bool label_fits(const std::string& wanted, const std::string& label) {
+bool label_fits(const std::string& wanted, std::string_view label) {
   return wanted.empty() || wanted == label;
+}
+
+bool finite(const Geodetic& position) {
+  return std::isfinite(position.latitude) && std::isfinite(position.longitude) &&
+         std::isfinite(position.height);
+}
+
+bool finite(const GnssFix& fix) {
+  return finite(fix.antenna) && fix.position_covariance.allFinite() &&
+         (!fix.velocity_n || (fix.velocity_n->allFinite() && fix.velocity_covariance.allFinite()));
+}
+
+bool finite(const ImuSample& sample) {
+  return sample.gyro_b.allFinite() && sample.accel_b.allFinite();
 }
 
 /// Reads ahead until the first IMU sample and the first fix.
@@ -55,7 +75,7 @@ class OverviewScan {
     rawlog::RawlogStream stream(path_);
     while (!(imu_found_ && gnss_found_)) {
       const std::optional<LoggedObservation> logged = stream.next();
-      if (!logged) throw DataError(missing());
+      if (!logged) throw DataError(stream.damage() ? *stream.damage() : missing());
       look_at(*logged);
     }
     return overview_;
@@ -63,29 +83,27 @@ class OverviewScan {
 
  private:
   void look_at(const LoggedObservation& logged) {
-    const std::string& label = logged.observation->sensorLabel;
-    if (!rawlog::from_mrpt(logged.observation->timestamp)) return;
-    if (const auto* imu =
-            dynamic_cast<const mrpt::obs::CObservationIMU*>(logged.observation.get())) {
+    if (!logged.t_ns) return;
+    if (logged.imu) {
       ++imus_;
-      if (!imu_found_ && label_fits(options_.imu_label, label)) take_imu(*imu);
+      if (!imu_found_ && label_fits(options_.imu_label, logged.label())) take_imu(*logged.imu);
     } else if (const auto* gps = as_gps(logged)) {
-      if (label == options_.reference_label) return;
+      if (gps->sensorLabel == options_.reference_label) return;
       ++gps_;
-      if (!gnss_found_ && label_fits(options_.gnss_label, label)) take_fix(*gps);
+      if (!gnss_found_ && label_fits(options_.gnss_label, gps->sensorLabel)) take_fix(*gps);
     }
   }
 
-  void take_imu(const mrpt::obs::CObservationIMU& imu) {
-    if (!rawlog::decode_imu(imu, 0)) return;
-    overview_.imu_label = imu.sensorLabel;
-    overview_.imu = rawlog::from_mrpt(imu.sensorPose);
+  void take_imu(const rawlog::ImuRecord& imu) {
+    if (!imu.sample) return;
+    overview_.imu_label = imu.label;
+    overview_.imu = rawlog::from_mrpt(rawlog::pose_of(imu));
     imu_found_ = true;
   }
 
   void take_fix(const mrpt::obs::CObservationGPS& gps) {
     const std::optional<GnssFix> fix = rawlog::decode_fix(gps, 0, false);
-    if (!fix) return;
+    if (!fix || !finite(fix->antenna)) return;
     overview_.gnss_label = gps.sensorLabel;
     overview_.antenna = rawlog::from_mrpt(gps.sensorPose);
     overview_.first_fix = fix->antenna;
@@ -127,20 +145,11 @@ struct Span {
     first_ns = std::min(first_ns, t_ns);
     last_ns = std::max(last_ns, t_ns);
   }
+  bool empty() const { return first_ns > last_ns; }
   bool overlaps(const Span& other) const {
     return first_ns <= other.last_ns && other.first_ns <= last_ns;
   }
 };
-
-bool finite(const Geodetic& position) {
-  return std::isfinite(position.latitude) && std::isfinite(position.longitude) &&
-         std::isfinite(position.height);
-}
-
-bool finite(const GnssFix& fix) {
-  return finite(fix.antenna) && fix.position_covariance.allFinite() &&
-         (!fix.velocity_n || (fix.velocity_n->allFinite() && fix.velocity_covariance.allFinite()));
-}
 
 bool same(const ImuSample& a, const ImuSample& b) {
   return a.t_ns == b.t_ns && a.gyro_b == b.gyro_b && a.accel_b == b.accel_b;
@@ -171,6 +180,7 @@ class RawlogSource::Impl {
   const Eigen::Vector3d& lever_arm() const { return lever_arm_; }
   const Overview& overview() const { return overview_; }
   const SourceCounts& counts() const { return counts_; }
+  const std::optional<std::string>& damage() const { return stream_.damage(); }
   double progress() const { return stream_.progress(); }
 
  private:
@@ -183,15 +193,18 @@ class RawlogSource::Impl {
   std::optional<Measurement> take_earliest();
   void read_one();
   void dispatch(const LoggedObservation& logged, int64_t t_ns);
-  void take_imu(const mrpt::obs::CObservationIMU& imu, int64_t record, int64_t t_ns);
-  void take_gps(const mrpt::obs::CObservationGPS& gps, int64_t record, int64_t t_ns);
+  void take_imu(const rawlog::ImuRecord& imu, int64_t record, int64_t t_ns);
+  void take_gps(const mrpt::obs::CObservationGPS& gps, int64_t t_ns);
   void take_reference(const ReferencePose& pose, const mrpt::poses::CPose3D& sensor_pose,
-                      int64_t record);
-  void take_odometry(const mrpt::obs::CObservationOdometry& odometry, int64_t record, int64_t t_ns);
+                      std::string_view type);
+  void take_odometry(const mrpt::obs::CObservationOdometry& odometry, int64_t t_ns);
   /// False if it comes too late to be put in order.
   bool add(const Measurement& measurement);
-  void skip(const LoggedObservation& logged, const std::string& reason = {});
-  void skip(const std::string& name) { ++counts_.skipped[name]; }
+  void skip(std::string_view type, std::string_view reason = {});
+  /// The same, with the stamp of the first in the notices.
+  void skip_noted(std::string_view type, std::string_view reason, int64_t t_ns);
+  void skip_backward(int64_t record, int64_t t_ns);
+  void end();
   void check_overlap() const;
   [[noreturn]] void fail(int64_t record, int64_t t_ns, const std::string& what) const;
 
@@ -206,12 +219,14 @@ class RawlogSource::Impl {
   SourceCounts counts_;
 
   std::optional<ImuSample> last_sample_;
+  int backward_in_a_row_ = 0;
   std::deque<ImuIncrement> increments_;
   std::multimap<int64_t, Measurement> others_;
   int64_t newest_imu_ns_ = std::numeric_limits<int64_t>::min();
   int64_t released_ns_ = std::numeric_limits<int64_t>::min();
   int64_t released_increment_ns_ = std::numeric_limits<int64_t>::min();
   std::optional<int64_t> first_late_ns_;
+  std::map<std::string, int64_t> first_skipped_ns_;  // keys as in counts_.skipped
   Span imu_span_;
   Span fix_span_;
   bool over_ = false;
@@ -247,94 +262,80 @@ void RawlogSource::Impl::read_one() {
   const std::optional<LoggedObservation> logged = stream_.next();
   if (!logged) {
     over_ = true;
-    check_overlap();
-    return;
-  }
-  const std::optional<int64_t> t_ns = rawlog::from_mrpt(logged->observation->timestamp);
-  if (t_ns) {
-    dispatch(*logged, *t_ns);
+    end();
+  } else if (!logged->imu && !logged->observation) {
+    skip(logged->type);
+  } else if (!logged->t_ns) {
+    skip(logged->type, "no stamp");
   } else {
-    skip(*logged, "no stamp");
+    dispatch(*logged, *logged->t_ns);
   }
 }
 
 void RawlogSource::Impl::dispatch(const LoggedObservation& logged, int64_t t_ns) {
+  if (logged.imu) return take_imu(*logged.imu, logged.record, t_ns);
+  if (const auto* gps = as_gps(logged)) return take_gps(*gps, t_ns);
   const mrpt::obs::CObservation* observation = logged.observation.get();
-  if (const auto* imu = dynamic_cast<const mrpt::obs::CObservationIMU*>(observation)) {
-    return take_imu(*imu, logged.record, t_ns);
-  }
-  if (const auto* gps = dynamic_cast<const mrpt::obs::CObservationGPS*>(observation)) {
-    return take_gps(*gps, logged.record, t_ns);
-  }
   if (const auto* odometry = dynamic_cast<const mrpt::obs::CObservationOdometry*>(observation)) {
-    return take_odometry(*odometry, logged.record, t_ns);
+    return take_odometry(*odometry, t_ns);
   }
   const auto* pose = dynamic_cast<const mrpt::obs::CObservationRobotPose*>(observation);
   if (pose != nullptr && pose->sensorLabel == options_.reference_label) {
     return take_reference(rawlog::decode_reference(*pose, overview_.first_fix, t_ns),
-                          pose->sensorPose, logged.record);
+                          pose->sensorPose, logged.type);
   }
-  skip(logged);
+  skip(logged.type);
 }
 
-void RawlogSource::Impl::take_imu(const mrpt::obs::CObservationIMU& imu, int64_t record,
-                                  int64_t t_ns) {
-  if (imu.sensorLabel != overview_.imu_label) return skip("CObservationIMU (another label)");
-  const std::optional<ImuSample> sample = rawlog::decode_imu(imu, t_ns);
-  if (!sample) return skip("CObservationIMU (no gyroscope or no accelerometer)");
-  if (!sample->gyro_b.allFinite() || !sample->accel_b.allFinite()) {
-    fail(record, t_ns, "an IMU value is not finite; remove the record");
-  }
-  if (last_sample_ && same(*sample, *last_sample_)) {
+void RawlogSource::Impl::take_imu(const rawlog::ImuRecord& imu, int64_t record, int64_t t_ns) {
+  if (imu.label != overview_.imu_label) return skip(kImu, "another label");
+  if (!imu.sample) return skip(kImu, "no gyroscope or no accelerometer");
+  ImuSample sample = *imu.sample;
+  sample.t_ns = t_ns;
+  if (!finite(sample)) return skip_noted(kImu, kNotFinite, t_ns);
+  if (last_sample_ && same(sample, *last_sample_)) {
     ++counts_.imu_duplicates;
     return;
   }
-  if (last_sample_ && t_ns <= last_sample_->t_ns) {
-    fail(record, t_ns,
-         fmt::format("the IMU stamp does not come after the one before it, {}; sort the log",
-                     rawlog::describe_stamp(last_sample_->t_ns)));
-  }
+  if (last_sample_ && t_ns <= last_sample_->t_ns) return skip_backward(record, t_ns);
+  backward_in_a_row_ = 0;
   last_sample_ = sample;
   newest_imu_ns_ = t_ns;
   imu_span_.add(t_ns);
   ++counts_.imu_samples;
-  if (const std::optional<ImuIncrement> increment = incrementer_.add(*sample)) {
+  if (const std::optional<ImuIncrement> increment = incrementer_.add(sample)) {
     increments_.push_back(*increment);
   }
 }
 
-void RawlogSource::Impl::take_gps(const mrpt::obs::CObservationGPS& gps, int64_t record,
-                                  int64_t t_ns) {
+void RawlogSource::Impl::take_gps(const mrpt::obs::CObservationGPS& gps, int64_t t_ns) {
   if (gps.sensorLabel == options_.reference_label) {
     const std::optional<ReferencePose> pose = rawlog::decode_reference(gps, t_ns);
-    if (!pose) return skip("CObservationGPS (reference without INSPVAS)");
-    return take_reference(*pose, gps.sensorPose, record);
+    if (!pose) return skip(kGps, "reference without INSPVAS");
+    return take_reference(*pose, gps.sensorPose, kGps);
   }
-  if (gps.sensorLabel != overview_.gnss_label) return skip("CObservationGPS (another label)");
+  if (gps.sensorLabel != overview_.gnss_label) return skip(kGps, "another label");
   std::optional<GnssFix> fix = rawlog::decode_fix(gps, t_ns, options_.gnss_velocity);
-  if (!fix) return skip("CObservationGPS (no position)");
-  if (!finite(*fix)) fail(record, t_ns, "a GNSS value is not finite; remove the record");
+  if (!fix) return skip(kGps, "no position");
   fix->p_b_a = lever_arm_to(rawlog::from_mrpt(gps.sensorPose));
+  if (!finite(*fix) || !fix->p_b_a.allFinite()) return skip_noted(kGps, kNotFinite, t_ns);
   fix_span_.add(t_ns);
   if (add(*fix)) ++counts_.fixes;
 }
 
 void RawlogSource::Impl::take_reference(const ReferencePose& pose,
-                                        const mrpt::poses::CPose3D& sensor_pose, int64_t record) {
-  if (!finite(pose.position)) {
-    fail(record, pose.t_ns, "the reference position is not finite; remove the record");
-  }
+                                        const mrpt::poses::CPose3D& sensor_pose,
+                                        std::string_view type) {
   const ReferencePose of_imu =
       rawlog::moved_to_imu(pose, rawlog::from_mrpt(sensor_pose), overview_.imu.p_v_s);
+  if (!finite(of_imu.position)) return skip_noted(type, kNotFinite, pose.t_ns);
   if (add(of_imu)) ++counts_.references;
 }
 
 void RawlogSource::Impl::take_odometry(const mrpt::obs::CObservationOdometry& odometry,
-                                       int64_t record, int64_t t_ns) {
-  if (!odometry.hasVelocities) return skip("CObservationOdometry (no velocity)");
-  if (!std::isfinite(odometry.velocityLocal.vx)) {
-    fail(record, t_ns, "the wheel speed is not finite; remove the record");
-  }
+                                       int64_t t_ns) {
+  if (!odometry.hasVelocities) return skip(kOdometry, "no velocity");
+  if (!std::isfinite(odometry.velocityLocal.vx)) return skip_noted(kOdometry, kNotFinite, t_ns);
   if (add(WheelSpeed{t_ns, odometry.velocityLocal.vx})) ++counts_.wheel_speeds;
 }
 
@@ -349,12 +350,38 @@ bool RawlogSource::Impl::add(const Measurement& measurement) {
   return true;
 }
 
-void RawlogSource::Impl::skip(const LoggedObservation& logged, const std::string& reason) {
-  const std::string name = rawlog::class_name(*logged.observation);
-  skip(reason.empty() ? name : fmt::format("{} ({})", name, reason));
+void RawlogSource::Impl::skip(std::string_view type, std::string_view reason) {
+  ++counts_.skipped[reason.empty() ? std::string(type) : fmt::format("{} ({})", type, reason)];
+}
+
+void RawlogSource::Impl::skip_noted(std::string_view type, std::string_view reason, int64_t t_ns) {
+  const std::string name = fmt::format("{} ({})", type, reason);
+  ++counts_.skipped[name];
+  first_skipped_ns_.emplace(name, t_ns);
+}
+
+/// A few are a recorder's hiccup; many in a row are a log that is not in order.
+void RawlogSource::Impl::skip_backward(int64_t record, int64_t t_ns) {
+  constexpr int kMostInARow = 100;
+  if (++backward_in_a_row_ > kMostInARow) {
+    fail(record, t_ns,
+         fmt::format("{} IMU stamps in a row do not come after {}; sort the log",
+                     backward_in_a_row_, rawlog::describe_stamp(last_sample_->t_ns)));
+  }
+  skip_noted(kImu, "stamp goes back", t_ns);
+}
+
+void RawlogSource::Impl::end() {
+  const bool usable = counts_.imu_samples > 0 && counts_.fixes > 0;
+  if (damage() && !usable) throw DataError(*damage());
+  check_overlap();
 }
 
 void RawlogSource::Impl::check_overlap() const {
+  if (imu_span_.empty() || fix_span_.empty()) {
+    throw DataError(fmt::format("'{}': no {} of it is finite; see `foucault info`", path_,
+                                imu_span_.empty() ? "IMU sample" : "GNSS fix"));
+  }
   if (imu_span_.overlaps(fix_span_)) {
     if (counts_.fixes > 0) return;
     throw DataError(
@@ -389,8 +416,11 @@ std::vector<Notice> RawlogSource::Impl::notices() const {
                                    counts_.imu_duplicates)});
   }
   for (const auto& [name, count] : counts_.skipped) {
+    const auto first = first_skipped_ns_.find(name);
+    const bool known = first != first_skipped_ns_.end();
     notices.push_back(
-        {begin_ns, NoticeKind::skipped, fmt::format("{} x {} not used", count, name)});
+        {known ? first->second : begin_ns, NoticeKind::skipped,
+         fmt::format("{} x {} not used{}", count, name, known ? ", the first here" : "")});
   }
   return notices;
 }
@@ -409,5 +439,6 @@ const std::string& RawlogSource::imu_label() const { return impl_->overview().im
 const std::string& RawlogSource::gnss_label() const { return impl_->overview().gnss_label; }
 const SourceCounts& RawlogSource::counts() const { return impl_->counts(); }
 std::vector<Notice> RawlogSource::notices() const { return impl_->notices(); }
+const std::optional<std::string>& RawlogSource::damage() const { return impl_->damage(); }
 
 }  // namespace foucault

@@ -40,7 +40,9 @@ struct GnssInfo {
   std::map<FixQuality, int64_t> qualities;
   int64_t without_position = 0;  ///< records without a valid position
   int64_t with_velocity = 0;
-  int64_t bad_sigma = 0;                                ///< zero or not finite
+  int64_t not_finite = 0;           ///< positions with a value that is not finite
+  int64_t first_not_finite_ns = 0;  ///< stamp of the first of them
+  int64_t bad_sigma = 0;            ///< zero or not finite
   Eigen::Vector3d min_sigma = Eigen::Vector3d::Zero();  ///< north, east, down [m]
   Eigen::Vector3d max_sigma = Eigen::Vector3d::Zero();
   Geodetic first, last;
@@ -57,10 +59,12 @@ struct RawlogInfo {
   int64_t records = 0;          ///< top-level objects read
   std::vector<StreamInfo> streams;
   std::vector<GnssInfo> receivers;
-  std::string imu_label;             ///< the one RawlogSource takes; empty: none
-  std::optional<Mounting> mounting;  ///< of that IMU
-  int64_t imu_not_finite = 0;
-  std::map<std::string, int64_t> other_records;  ///< top-level objects that are no observations
+  std::string imu_label;                ///< the one RawlogSource takes; empty: none
+  std::optional<Mounting> mounting;     ///< of that IMU
+  int64_t imu_not_finite = 0;           ///< samples with a value that is not finite
+  int64_t first_imu_not_finite_ns = 0;  ///< stamp of the first of them
+  /// Objects of other classes, with neither label nor stamp: their contents are not read.
+  std::map<std::string, int64_t> other_records;
   std::optional<std::string> damage;  ///< one line, if the file breaks off; the rest is up to there
 };
 

@@ -52,10 +52,14 @@ struct SourceCounts {
 /// Order: by stamp, as core/measurement.h says. Fixes may come up to reorder_s late.
 /// Memory: constant; it grows only with what lies within reorder_s, or ahead of the IMU.
 ///
-/// Throws DataError, one line naming the file, for: missing, a directory, empty, not a rawlog,
-/// truncated or damaged (byte offset, records read), records of a newer MRPT, no IMU, no GNSS, IMU
-/// stamps that go back or values that are not finite (record number and stamp), IMU and GNSS that
-/// do not overlap in time or fixes that are all late (when the log ends).
+/// Values that are not finite are skipped and counted, and so are IMU samples whose stamps go back.
+/// Damage in the log (truncated, corrupt, records of a newer MRPT) ends it: everything before comes
+/// out, then next() gives none and damage() says what and where.
+///
+/// Throws DataError, one line naming the file, for: missing, a directory, empty, not a rawlog, no
+/// IMU, no GNSS, damage before the first of either, more than 100 IMU stamps in a row that go back
+/// (record number and stamp), IMU and GNSS that do not overlap in time or fixes that are all late
+/// (when the log ends).
 class RawlogSource : public Source {
  public:
   explicit RawlogSource(const std::string& path, SampleKind samples = SampleKind::interval_mean,
@@ -74,6 +78,8 @@ class RawlogSource : public Source {
   const SourceCounts& counts() const;
   /// What was left out, one notice a kind, with how many and the stamp of the first.
   std::vector<Notice> notices() const;
+  /// What ended the log before its end, one line with file, byte and remedy; none yet or at all.
+  const std::optional<std::string>& damage() const;
 
  private:
   class Impl;

@@ -1,0 +1,84 @@
+#pragma once
+
+#include <zlib.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace foucault::rawlog {
+
+/// A part of a buffer that someone else owns.
+struct Bytes {
+  const unsigned char* begin = nullptr;
+  const unsigned char* end = nullptr;
+
+  size_t size() const { return static_cast<size_t>(end - begin); }
+};
+
+/// The contents of a gzip or plain file, through a window that slides over them. Memory is
+/// constant. What was inflated before a damage is still given out; end() tells what came then.
+class InflatedFile {
+ public:
+  enum class End { none, clean, truncated, damaged, unreadable };
+  /// The window shows at least so many bytes unless the contents end within.
+  static constexpr size_t kWindow = size_t{1} << 16;
+
+  /// Throws DataError if the file is missing, a directory, empty or cannot be read.
+  explicit InflatedFile(const std::string& path);
+  ~InflatedFile();
+  InflatedFile(const InflatedFile&) = delete;
+  InflatedFile& operator=(const InflatedFile&) = delete;
+
+  /// Bytes from offset() on; valid until the next call.
+  Bytes window() {
+    if (filled_ - position_ < kWindow && end_ == End::none) fill();
+    return {buffer_.data() + position_, buffer_.data() + filled_};
+  }
+  /// `count` bytes of the window are done with.
+  void advance(size_t count) {
+    position_ += count;
+    offset_ += count;
+  }
+
+  /// How the contents end; none while there are more than the window shows.
+  End end() const { return end_; }
+  /// Of the window, in the contents.
+  uint64_t offset() const { return offset_; }
+  /// Bytes of the file that have been used; at a damage, its place.
+  uint64_t file_offset() const { return file_offset_; }
+  uint64_t file_size() const { return file_size_; }
+  bool compressed() const { return compressed_; }
+  /// Part of the file that is read, 0 to 1.
+  double progress() const;
+
+ private:
+  struct FileClose {
+    void operator()(std::FILE* file) const { std::fclose(file); }
+  };
+
+  void fill();
+  bool load(End at_end);
+  void copy();
+  void inflate();
+  bool begin_member();
+
+  std::string path_;
+  std::unique_ptr<std::FILE, FileClose> file_;
+  uint64_t file_size_ = 0;
+  uint64_t file_offset_ = 0;
+  bool compressed_ = false;
+  bool in_member_ = false;
+  z_stream stream_{};
+  std::vector<unsigned char> input_;
+  std::vector<unsigned char> buffer_;
+  size_t position_ = 0;
+  size_t filled_ = 0;
+  uint64_t offset_ = 0;
+  End end_ = End::none;
+};
+
+}  // namespace foucault::rawlog
