@@ -69,18 +69,43 @@ class NamedEstimator : public Estimator {
   std::unique_ptr<Estimator> estimator_;
 };
 
-/// What was left out of each log, from whichever of its readers came to the end.
+/// For comparisons that mean nothing unless the log is whole.
+class WholeSource : public Source {
+ public:
+  explicit WholeSource(std::unique_ptr<RawlogSource> source) : source_(std::move(source)) {}
+
+  std::optional<Measurement> next() override {
+    std::optional<Measurement> measurement = source_->next();
+    if (!measurement && source_->damage()) throw DataError(*source_->damage());
+    return measurement;
+  }
+  const Mounting& mounting() const override { return source_->mounting(); }
+  double progress() const override { return source_->progress(); }
+
+ private:
+  std::unique_ptr<RawlogSource> source_;
+};
+
+/// What was left out of each log and where it broke off, from whichever of its readers came to the
+/// end.
 class LogNotices {
  public:
-  void put(const std::string& recording, const std::vector<Notice>& notices) {
+  void put(const std::string& recording, const RawlogSource& source) {
     const std::lock_guard<std::mutex> lock(mutex_);
-    notices_.emplace(recording, notices);
+    notices_.emplace(recording, source.notices());
+    if (source.damage()) damages_.emplace(recording, *source.damage());
   }
-  const std::map<std::string, std::vector<Notice>>& get() const { return notices_; }
+  const std::map<std::string, std::vector<Notice>>& notices() const { return notices_; }
+  std::vector<std::string> damages() const {
+    std::vector<std::string> damages;
+    for (const auto& [recording, damage] : damages_) damages.push_back(damage);
+    return damages;
+  }
 
  private:
   std::mutex mutex_;
   std::map<std::string, std::vector<Notice>> notices_;
+  std::map<std::string, std::string> damages_;
 };
 
 class NotingSource : public Source {
@@ -90,7 +115,7 @@ class NotingSource : public Source {
 
   std::optional<Measurement> next() override {
     std::optional<Measurement> measurement = source_->next();
-    if (!measurement) notices_.put(recording_, source_->notices());
+    if (!measurement) notices_.put(recording_, *source_);
     return measurement;
   }
   const Mounting& mounting() const override { return source_->mounting(); }
@@ -152,7 +177,9 @@ std::vector<ExperimentRun> experiment_runs(const EvaluationCase& evaluation_case
     run.method = evaluation_case.label.empty() ? method.name : evaluation_case.label;
     run.shift_s = shift_s;
     run.schedule = OutageSchedule(settings.outages, shift_s);
-    run.open = [log = evaluation_case.log, settings] { return open_log(log, settings); };
+    run.open = [log = evaluation_case.log, settings] {
+      return std::make_unique<WholeSource>(open_log(log, settings));
+    };
     run.make_estimator = [make = method.make, settings, name = run.recording](
                              const Mounting& mounting, Sink& sink) {
       return std::make_unique<NamedEstimator>(name, make(settings, mounting, sink));
@@ -167,8 +194,8 @@ void check_logs(const std::vector<std::string>& logs, const Settings& settings) 
   for (const std::string& log : logs) open_log(log, settings);
 }
 
-std::vector<ExperimentResult> evaluate(const std::vector<EvaluationCase>& cases, int threads,
-                                       Console& console) {
+Evaluation evaluate_what_is_there(const std::vector<EvaluationCase>& cases, int threads,
+                                  Console& console) {
   LogNotices notices;
   std::vector<ExperimentRun> runs;
   for (const EvaluationCase& c : cases) {
@@ -180,11 +207,19 @@ std::vector<ExperimentResult> evaluate(const std::vector<EvaluationCase>& cases,
     }
   }
   for (const EvaluationCase& c : cases) check_logs({c.log}, c.settings);
-  const std::vector<ExperimentResult> results =
-      run_experiments(runs, threads, console.progress_of("evaluating"));
-  for (const auto& [recording, of_log] : notices.get()) warn(recording, of_log, console);
-  for (const ExperimentResult& result : results) warn(result, console);
-  return results;
+  Evaluation evaluation;
+  evaluation.results = run_experiments(runs, threads, console.progress_of("evaluating"));
+  evaluation.damages = notices.damages();
+  for (const auto& [recording, of_log] : notices.notices()) warn(recording, of_log, console);
+  for (const ExperimentResult& result : evaluation.results) warn(result, console);
+  return evaluation;
+}
+
+std::vector<ExperimentResult> evaluate(const std::vector<EvaluationCase>& cases, int threads,
+                                       Console& console) {
+  Evaluation evaluation = evaluate_what_is_there(cases, threads, console);
+  if (!evaluation.damages.empty()) throw DataError(evaluation.damages.front());
+  return std::move(evaluation.results);
 }
 
 }  // namespace foucault::app

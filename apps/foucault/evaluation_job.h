@@ -28,12 +28,20 @@ std::vector<EvaluationCase> cross(const std::vector<std::string>& logs,
 /// The runs of a case, one a shift. Throws UsageError for settings that make no sense.
 std::vector<ExperimentRun> experiment_runs(const EvaluationCase& evaluation_case);
 
-/// Opens each log once: what is missing or no rawlog shows before hours are spent on others, and
-/// MRPT's registry of classes, which may not be filled by two threads at once, is filled.
+/// Opens each log once: what is missing or no rawlog shows before hours are spent on others.
 void check_logs(const std::vector<std::string>& logs, const Settings& settings);
+
+struct Evaluation {
+  std::vector<ExperimentResult> results;
+  std::vector<std::string> damages;  ///< logs that break off, a line each; results are up to there
+};
 
 /// Runs all cases on `threads` threads; results in the order of the cases, then of the shifts.
 /// Says what users should know about the data. Throws DataError, UsageError, Interrupted.
+Evaluation evaluate_what_is_there(const std::vector<EvaluationCase>& cases, int threads,
+                                  Console& console);
+
+/// The same with a DataError for a log that breaks off.
 std::vector<ExperimentResult> evaluate(const std::vector<EvaluationCase>& cases, int threads,
                                        Console& console);
 

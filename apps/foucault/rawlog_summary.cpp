@@ -37,7 +37,8 @@ std::vector<std::string> health_notes(const RawlogInfo& info) {
   if (info.imu_label.empty()) notes.emplace_back("no IMU: 'run' cannot process it");
   if (info.receivers.empty()) notes.emplace_back("no GNSS receiver: 'run' cannot process it");
   if (info.imu_not_finite > 0) {
-    notes.push_back(fmt::format("{} IMU samples are not finite", info.imu_not_finite));
+    notes.push_back(fmt::format("{} IMU samples are not finite, the first at {}; they are left out",
+                                info.imu_not_finite, format_utc(info.first_imu_not_finite_ns)));
   }
   for (const StreamInfo& s : info.streams) {
     if (s.backward > 0) notes.push_back(fmt::format("{}: {} stamps go back", s.label, s.backward));
@@ -49,6 +50,10 @@ std::vector<std::string> health_notes(const RawlogInfo& info) {
     }
   }
   for (const GnssInfo& r : info.receivers) {
+    if (r.not_finite > 0) {
+      notes.push_back(fmt::format("{}: {} fixes are not finite, the first at {}; they are left out",
+                                  r.label, r.not_finite, format_utc(r.first_not_finite_ns)));
+    }
     if (r.bad_sigma > 0) {
       notes.push_back(fmt::format("{}: {} fixes with a sigma that is zero or not finite", r.label,
                                   r.bad_sigma));
@@ -130,6 +135,7 @@ Json receiver_json(const GnssInfo& r) {
             {"qualities", qualities},
             {"without_position", r.without_position},
             {"with_velocity", r.with_velocity},
+            {"not_finite", r.not_finite},
             {"bad_sigma", r.bad_sigma},
             {"min_sigma_m", vector_json(r.min_sigma)},
             {"max_sigma_m", vector_json(r.max_sigma)},

@@ -38,6 +38,7 @@ void process(const std::string& log, RawlogSource& source, Estimator& estimator,
   }
   naming(log, [&] { estimator.finish(); });
   for (const Notice& notice : source.notices()) output.notice(notice);
+  if (source.damage()) output.damage(*source.damage());
 }
 
 reports::RunLabels labels(const RunJob& job, const std::string& config) {
@@ -76,7 +77,9 @@ RunResult run_into(const RunJob& job, const std::filesystem::path& folder, Conso
   result.report = job.report;
   result.statistics_from_s = settings.output.statistics_from_s;
   result.metrics = output.finish();
+  result.damage = source.damage();
   if (result.metrics.epochs == 0) {
+    if (result.damage) throw DataError(*result.damage);
     throw DataError(fmt::format("'{}': no epoch came out of the data", job.log));
   }
   result.resources = meter.used();

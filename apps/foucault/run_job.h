@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,11 +30,13 @@ struct RunResult {
   RunMetrics metrics;
   double statistics_from_s = 0;
   Resources resources;  ///< of reading and estimating, without the report
+  /// Why the log broke off, one line; the results are up to there.
+  std::optional<std::string> damage;
 };
 
 /// Processes the log and writes solution.csv, .tum, .kml, metrics.json, config.yaml and report/ to
-/// job.out: all of it or, if something goes wrong, nothing. Throws DataError, UsageError,
-/// Interrupted.
+/// job.out: all of it or, if something goes wrong, nothing. A log that breaks off gives results up
+/// to there. Throws DataError, UsageError, Interrupted.
 RunResult run(const RunJob& job, Console& console);
 
 /// The same into a folder that exists, with no care for what is in it.

@@ -125,6 +125,7 @@ std::string metrics_json(const RunResult& result) {
   json["wall_s"] = result.resources.wall_s;
   json["peak_rss_mb"] = result.resources.peak_rss_mb;
   json["log"] = result.log;
+  if (result.damage) json["damage"] = *result.damage;
   json["version"] = kVersion;
   return json.dump(2) + "\n";
 }

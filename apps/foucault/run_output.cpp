@@ -44,6 +44,7 @@ void RunOutput::measurement(const Measurement& measurement) {
 }
 
 void RunOutput::epoch(const Epoch& epoch) {
+  last_epoch_ns_ = epoch.t_ns;
   solution_.epoch(epoch);
   if (report_ != nullptr) report_->epoch(epoch);
   if (metrics_) metrics_->epoch(epoch);
@@ -62,6 +63,10 @@ void RunOutput::notice(const Notice& notice) {
   } else {
     console_.warn(fmt::format("{}: {}", format_utc(notice.t_ns), notice.text));
   }
+}
+
+void RunOutput::damage(const std::string& text) {
+  if (report_ != nullptr) report_->notice({last_epoch_ns_, NoticeKind::skipped, text});
 }
 
 void RunOutput::reference_error(const Epoch& epoch, const ReferenceError& error) {

@@ -28,6 +28,8 @@ class RunOutput : public Sink {
   void epoch(const Epoch& epoch) override;
   void fix(const FixResult& fix) override;
   void notice(const Notice& notice) override;
+  /// Why the log broke off, for the report; the command says it at its end.
+  void damage(const std::string& text);
 
   /// Completes the files.
   RunMetrics finish();
@@ -40,6 +42,7 @@ class RunOutput : public Sink {
   SolutionWriter solution_;
   ReferenceComparison comparison_;
   std::optional<RunMetricsCollector> metrics_;  ///< from the first fix on
+  int64_t last_epoch_ns_ = 0;
   reports::RunReport* report_;
   Console& console_;
 };

@@ -2,12 +2,14 @@
 
 #include <filesystem>
 #include <memory>
+#include <utility>
 
 #include "command.h"
 #include "config_arguments.h"
 #include "evaluation_job.h"
 #include "evaluation_output.h"
 #include "evaluation_report.h"
+#include "foucault/core/error.h"
 #include "foucault/evaluation/task_pool.h"
 #include "foucault/reports/report_page.h"
 #include "methods.h"
@@ -46,7 +48,8 @@ void evaluate_logs(const EvaluateOptions& options, Call& call) {
   apply(options.config, settings);
   const std::vector<EvaluationCase> cases = cross(options.logs, options.methods, settings);
   OutputDirectory directory(options.out);
-  const EvaluationSummary summary(evaluate(cases, options.jobs, call.console));
+  Evaluation evaluation = evaluate_what_is_there(cases, options.jobs, call.console);
+  const EvaluationSummary summary(std::move(evaluation.results));
   const EvaluationLabels with = labels(settings, call.command_line);
   write_evaluation(summary, with, directory.staging());
   if (!options.no_report) {
@@ -60,6 +63,10 @@ void evaluate_logs(const EvaluateOptions& options, Call& call) {
   if (!options.no_report) {
     const std::filesystem::path page = std::filesystem::path(options.out) / "report" / "index.html";
     call.console.say(fmt::format("{:<10} {}", "report", page.string()));
+  }
+  if (!evaluation.damages.empty()) {
+    throw DataError(fmt::format("{}; the results in '{}' are of what is there",
+                                fmt::join(evaluation.damages, "; "), options.out));
   }
 }
 

@@ -4,6 +4,7 @@
 
 #include "command.h"
 #include "config_arguments.h"
+#include "foucault/core/error.h"
 #include "methods.h"
 #include "run_job.h"
 
@@ -50,6 +51,10 @@ std::function<void(Call&)> declare_run(CLI::App& app) {
     o->job.command_line = call.command_line;
     const RunResult result = run(o->job, call.console);
     for (const std::string& line : summary_lines(result)) call.console.say(line);
+    if (result.damage) {
+      throw DataError(fmt::format("{}; the results in '{}' are of what came before", *result.damage,
+                                  result.out));
+    }
   };
 }
 
