@@ -37,6 +37,14 @@ Eigen::Matrix3d rotation_polynomial(const Eigen::Vector3d& r, double a, double b
   return Eigen::Matrix3d::Identity() + a * r_cross + b * r_cross * r_cross;
 }
 
+/// exp() for an angle below 0.1, with x its square: sin(a/2)/a and cos(a/2) by their series; what
+/// is left out is under 3e-19. Most rotations are those of an IMU's sample.
+Eigen::Quaterniond exp_of_small(const Eigen::Vector3d& rotation, double x) {
+  const double s = 0.5 - x * (1.0 / 48 - x * (1.0 / 3840 - x * (1.0 / 645120 - x / 185794560)));
+  const double c = 1 - x * (1.0 / 8 - x * (1.0 / 384 - x * (1.0 / 46080 - x / 10321920)));
+  return {c, s * rotation.x(), s * rotation.y(), s * rotation.z()};
+}
+
 }  // namespace
 
 Eigen::Matrix3d skew(const Eigen::Vector3d& v) {
@@ -46,7 +54,9 @@ Eigen::Matrix3d skew(const Eigen::Vector3d& v) {
 }
 
 Eigen::Quaterniond exp(const Eigen::Vector3d& rotation) {
-  const double angle = rotation.norm();
+  const double square = rotation.squaredNorm();
+  if (square < 0.01) return exp_of_small(rotation, square);
+  const double angle = std::sqrt(square);
   const Eigen::Vector3d vec = half_sinc(angle) * rotation;
   return {std::cos(angle / 2), vec.x(), vec.y(), vec.z()};
 }

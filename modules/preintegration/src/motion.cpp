@@ -30,8 +30,8 @@ Corrected correct(const Preintegration& pre, const ImuBias& bias) {
 /// A bias of b0 at the beginning decays towards the one at which the interval was integrated.
 ImuBias expected_bias(const ImuBias& b0, const Preintegration& pre) {
   ImuBias b1;
-  b1.gyro = pre.bias.gyro + pre.bias_decay * (b0.gyro - pre.bias.gyro);
-  b1.accel = pre.bias.accel + pre.bias_decay * (b0.accel - pre.bias.accel);
+  b1.gyro = pre.bias.gyro + pre.gyro_bias_decay * (b0.gyro - pre.bias.gyro);
+  b1.accel = pre.bias.accel + pre.accel_bias_decay * (b0.accel - pre.bias.accel);
   return b1;
 }
 
@@ -155,8 +155,8 @@ Matrix15d jacobian_x0(const Terms& t, const Preintegration& pre, const EarthMode
             -Jr_inverse * so3::exp(r_q).toRotationMatrix().transpose() *
                 so3::right_jacobian(t.z.dq_shift) * pre.J_dq_bg);
 
-  set_block(J, kGyroBias, kGyroBias, -pre.bias_decay * Matrix3d::Identity());
-  set_block(J, kAccelBias, kAccelBias, -pre.bias_decay * Matrix3d::Identity());
+  set_block(J, kGyroBias, kGyroBias, -pre.gyro_bias_decay * Matrix3d::Identity());
+  set_block(J, kAccelBias, kAccelBias, -pre.accel_bias_decay * Matrix3d::Identity());
   return J;
 }
 

@@ -13,11 +13,25 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-/// v x M, column by column.
+/// [v x] M.
 Matrix3d cross(const Vector3d& v, const Matrix3d& M) {
   Matrix3d out;
   for (int j = 0; j < 3; ++j) out.col(j) = v.cross(M.col(j));
   return out;
+}
+
+/// M [v x].
+Matrix3d times_cross(const Matrix3d& M, const Vector3d& v) {
+  Matrix3d out;
+  out.col(0) = v.z() * M.col(1) - v.y() * M.col(2);
+  out.col(1) = v.x() * M.col(2) - v.z() * M.col(0);
+  out.col(2) = v.y() * M.col(0) - v.x() * M.col(1);
+  return out;
+}
+
+/// q / |q| for a q that is off by rounding, a Newton step of it.
+Eigen::Quaterniond nearly_normalized(const Eigen::Quaterniond& q) {
+  return Eigen::Quaterniond(q.coeffs() * (1.5 - 0.5 * q.squaredNorm()));
 }
 
 }  // namespace
@@ -48,7 +62,7 @@ void Preintegrator::add(const ImuIncrement& increment) {
   }
   const Vector3d u = velocity_with_sculling(previous_dtheta, previous_dvel, dtheta, dvel);
   const Vector3d y = C_ * u;
-  m_.dq = (m_.dq * so3::exp(rotation_with_coning(previous_dtheta, dtheta))).normalized();
+  m_.dq = nearly_normalized(m_.dq * so3::exp(rotation_with_coning(previous_dtheta, dtheta)));
   const Matrix3d C_next = m_.dq.toRotationMatrix();
 
   propagate_errors(increment, C_, C_next, y);
@@ -90,6 +104,14 @@ void Preintegrator::add_noise(double h, double q_g, double q_a) {
   cov_.aa += h * noise_.accel_bias_power();
 }
 
+/// Decay of the biases over a sample, kept while samples are equally long.
+void Preintegrator::set_bias_decay(double dt) {
+  if (dt == bias_decay_dt_) return;
+  bias_decay_dt_ = dt;
+  gyro_bias_decay_ = std::exp(-dt / gyro_markov_bias(noise_).tau);
+  accel_bias_decay_ = std::exp(-dt / accel_markov_bias(noise_).tau);
+}
+
 /// Phi of one sample, the exact derivative of add():
 ///   eps' = eps - D bg
 ///   v'   = v + w,           w = -[y x] (eps - dt/2 C bg) - D ba
@@ -100,58 +122,50 @@ void Preintegrator::add_noise(double h, double q_g, double q_a) {
 /// single sample would have a covariance that is not positive. (40), (42), (43)
 void Preintegrator::propagate_covariance(const ImuIncrement& increment, const Matrix3d& C,
                                          const Matrix3d& D, const Vector3d& y, double dt) {
-  if (dt != bias_decay_dt_) {
-    bias_decay_dt_ = dt;
-    bias_decay_ = std::exp(-dt / noise_.bias_tau);
-  }
-  const double e = bias_decay_;
-  const double q_g =
-      std::pow(noise_.gyro_noise_density, 2) + std::pow(increment.extra_gyro_noise_density, 2);
-  const double q_a =
-      std::pow(noise_.accel_noise_density, 2) + std::pow(increment.extra_accel_noise_density, 2);
+  set_bias_decay(dt);
+  const double q_g = noise_.gyro_noise_density * noise_.gyro_noise_density +
+                     increment.extra_gyro_noise_density * increment.extra_gyro_noise_density;
+  const double q_a = noise_.accel_noise_density * noise_.accel_noise_density +
+                     increment.extra_accel_noise_density * increment.extra_accel_noise_density;
   const double h = 0.5 * dt;
   Blocks& s = cov_;
   add_noise(h, q_g, q_a);
 
-  const Matrix3d B = cross(y, h * C);  // d w / d bg
+  // B = [y x] dt/2 C, so that w = -[y x] eps + B bg - D ba. Covariances of the old state with w:
+  // x w^T = (x eps^T) [y x] + (x bg^T) B^T - (x ba^T) D^T.
+  const Matrix3d B = cross(y, h * C);
+  const Matrix3d Bt = B.transpose();
+  const Matrix3d Dt = D.transpose();
+  const Matrix3d pw = times_cross(s.pe, y) + s.pg * Bt - s.pa * Dt;
+  const Matrix3d vw = times_cross(s.ve, y) + s.vg * Bt - s.va * Dt;
+  const Matrix3d ew = times_cross(s.ee, y) + s.eg * Bt;
+  const Matrix3d we = ew.transpose();
+  const Matrix3d wg = s.gg * B - cross(y, s.eg);
+  const Matrix3d wa = -s.aa * D;
+  const Matrix3d ww = times_cross(we, y) + wg * Bt - wa * Dt;
 
-  // Left product, row by row: (Phi S) for rows v and eps against the columns that are needed.
-  // Columns: p, v, e, g, a; transposes of the stored upper blocks stand for the lower ones.
-  const Matrix3d wp = -cross(y, s.pe.transpose()) + B * s.pg.transpose() - D * s.pa.transpose();
-  const Matrix3d wv = -cross(y, s.ve.transpose()) + B * s.vg.transpose() - D * s.va.transpose();
-  const Matrix3d we = -cross(y, s.ee) + B * s.eg.transpose();
-  const Matrix3d wg = -cross(y, s.eg) + B * s.gg;
-  const Matrix3d wa = -D * s.aa;
-  const Matrix3d ww = -cross(y, we.transpose()).transpose() + wg * B.transpose() -
-                      wa * D.transpose();  // w w^T; it is symmetric
-
-  const Matrix3d pp = s.pp, pv = s.pv, vv = s.vv;
-  const Matrix3d pw = wp.transpose();  // p w^T
-  const Matrix3d vw = wv.transpose();  // v w^T
-
-  // p' = p + dt v + h w
-  s.pp = pp + dt * (pv + pv.transpose()) + h * (pw + pw.transpose()) + dt * dt * vv +
-         h * dt * (vw + vw.transpose()) + h * h * ww;
-  // v' = v + w
-  s.pv = pv + pw + dt * (vv + vw) + h * (wv + ww);
-  s.vv = vv + vw + vw.transpose() + ww;
-  // eps' = eps - D bg
-  const Matrix3d p_e = s.pe + dt * s.ve + h * we;
-  const Matrix3d p_g = s.pg + dt * s.vg + h * wg;
-  const Matrix3d p_a = s.pa + dt * s.va + h * wa;
-  const Matrix3d v_e = s.ve + we;
-  const Matrix3d v_g = s.vg + wg;
-  s.pe = p_e - p_g * D.transpose();
-  s.ve = v_e - v_g * D.transpose();
-  const Matrix3d eg_D = s.eg * D.transpose();
-  s.ee += s.gg * D * D.transpose() - eg_D - eg_D.transpose();
-  s.pg = e * p_g;
-  s.vg = e * v_g;
-  s.pa = e * p_a;
-  s.va = e * (s.va + wa);
-  s.eg = e * (s.eg - s.gg * D);
-  s.gg *= e * e;
-  s.aa *= e * e;
+  // p' = p + dt u with u = v + w/2, and v' = v + w.
+  const Matrix3d wv = vw.transpose();
+  const Matrix3d pu = s.pv + 0.5 * pw;
+  const Matrix3d uv = s.vv + 0.5 * wv;
+  const Matrix3d uw = vw + 0.5 * ww;
+  s.pp += dt * (pu + pu.transpose() + dt * (uv + 0.5 * uw));
+  s.pv += pw + dt * (uv + uw);
+  s.vv += vw + wv + ww;
+  // eps' = eps - D bg, and the decay of the biases.
+  const Matrix3d pg = s.pg + dt * (s.vg + 0.5 * wg);
+  const Matrix3d vg = s.vg + wg;
+  const Matrix3d eg = s.eg - s.gg * D;
+  s.pe += dt * (s.ve + 0.5 * we) - pg * Dt;
+  s.ve += we - vg * Dt;
+  s.ee -= D * s.eg.transpose() + eg * Dt;
+  s.pg = gyro_bias_decay_ * pg;
+  s.vg = gyro_bias_decay_ * vg;
+  s.eg = gyro_bias_decay_ * eg;
+  s.pa = accel_bias_decay_ * (s.pa + dt * (s.va + 0.5 * wa));
+  s.va = accel_bias_decay_ * (s.va + wa);
+  s.gg *= gyro_bias_decay_ * gyro_bias_decay_;
+  s.aa *= accel_bias_decay_ * accel_bias_decay_;
 
   add_noise(h, q_g, q_a);
 }
@@ -185,7 +199,8 @@ Preintegration Preintegrator::result() const {
 
 Preintegration Preintegrator::result_with_bias_decay() const {
   Preintegration out = result();
-  out.bias_decay = std::exp(-out.dt / noise_.bias_tau);
+  out.gyro_bias_decay = std::exp(-out.dt / gyro_markov_bias(noise_).tau);
+  out.accel_bias_decay = std::exp(-out.dt / accel_markov_bias(noise_).tau);
   return out;
 }
 

@@ -57,8 +57,10 @@ class DensePreintegrator {
     phi.middleRows<3>(kVelocity) += w;
     phi.block<3, 3>(kPosition, kVelocity) = dt * Matrix3d::Identity();
     phi.middleRows<3>(kPosition) += 0.5 * dt * w;
-    const double e = std::exp(-dt / noise_.bias_tau);
-    phi.block<6, 6>(kGyroBias, kGyroBias) *= e;
+    phi.middleCols<3>(kGyroBias).middleRows<3>(kGyroBias) *=
+        std::exp(-dt / gyro_markov_bias(noise_).tau);
+    phi.middleCols<3>(kAccelBias).middleRows<3>(kAccelBias) *=
+        std::exp(-dt / accel_markov_bias(noise_).tau);
 
     Vector15d W = Vector15d::Zero();
     W.segment<3>(kVelocity).setConstant(std::pow(noise_.accel_noise_density, 2));

@@ -30,11 +30,12 @@ struct Preintegration {
   Eigen::Vector3d idp = Eigen::Vector3d::Zero();           ///< integral of dp [m s]
   Eigen::Vector3d iidp = Eigen::Vector3d::Zero();          ///< integral of idp [m s^2]
   ImuBias bias;                                            ///< at which it was integrated; (37)
-  /// Share that is left at t_end of what the true bias at t_begin has beyond `bias`. 1 in (49);
-  /// exp(-T / tau) is the Gauss-Markov process (32) that the covariance takes. It is the deviation
-  /// from the estimate that decays, as in a Kalman filter, and not the estimate: most of it is the
-  /// turn-on bias, which stays.
-  double bias_decay = 1;
+  /// Share that is left at t_end of what the true bias at t_begin has beyond `bias`. 1 in (49); the
+  /// processes of MarkovBias make it exp(-T / tau). It is the deviation from the estimate that
+  /// decays, as in a Kalman filter, and not the estimate: that holds the turn-on value, which
+  /// stays.
+  double gyro_bias_decay = 1;
+  double accel_bias_decay = 1;
 
   /// Jacobians by the biases, (44): dp(bias + d) = dp + J_dp_bg d_g + J_dp_ba d_a, and so on;
   /// dq(bias + d) = dq * exp(J_dq_bg d_g).
@@ -53,7 +54,7 @@ struct Preintegration {
 /// The attitude error is kept in b_i, eps = C e_theta, in which (35) becomes
 ///     eps' = -C (bg + n_g),   v' = -[a x] eps - C (ba + n_a),   p' = v:
 /// only the skew of the velocity increment and C itself remain of the 15x15 products.
-/// Noise by the trapezoid rule, as (42); biases decay as Gauss-Markov in the covariance.
+/// Noise by the trapezoid rule, as (42); biases are the processes of MarkovBias.
 class Preintegrator {
  public:
   /// `previous`: the increment before the first, for coning and sculling.
@@ -64,9 +65,9 @@ class Preintegrator {
   /// Throws std::invalid_argument if it does not, or if it is empty.
   void add(const ImuIncrement& increment);
 
-  /// The measurement up to the last increment; bias_decay is 1.
+  /// The measurement up to the last increment; biases do not decay in it.
   Preintegration result() const;
-  /// The same with the decay of the Gauss-Markov process.
+  /// The same with the decay of the Gauss-Markov processes.
   Preintegration result_with_bias_decay() const;
 
   double dt() const { return m_.dt; }
@@ -83,6 +84,7 @@ class Preintegrator {
                             const Eigen::Matrix3d& D, const Eigen::Vector3d& y, double dt);
 
   void add_noise(double h, double q_g, double q_a);
+  void set_bias_decay(double dt);
 
   /// Blocks of the covariance that are not zero; e = eps, g = gyro bias, a = accel bias.
   struct Blocks {
@@ -96,8 +98,9 @@ class Preintegrator {
   Preintegration m_;  ///< its J_dq_bg holds d eps / d bg until result()
   Eigen::Matrix3d C_ = Eigen::Matrix3d::Identity();
   Blocks cov_;
-  double bias_decay_dt_ = -1;  ///< dt for which bias_decay_ was computed
-  double bias_decay_ = 1;
+  double bias_decay_dt_ = -1;  ///< sample length for which the decays were computed
+  double gyro_bias_decay_ = 1;
+  double accel_bias_decay_ = 1;
 };
 
 }  // namespace foucault
