@@ -87,6 +87,23 @@ TEST_F(Trip, InfoTellsWhatIsInIt) {
   EXPECT_TRUE(imu_seen);
 }
 
+TEST_F(Trip, ProfileTellsWhereTheTimeWent) {
+  const Outcome run =
+      foucault({"run", log_, "--method", "ekf", "--profile", "--out", folder_ / "profiled"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("mechanize"));
+  const json profile = metrics("profiled")["profile"];
+  double sum = 0;
+  for (const auto& [stage, seconds] : profile.items()) {
+    if (stage != "total_s") sum += seconds.get<double>();
+  }
+  EXPECT_NEAR(sum, profile["total_s"], 1e-9);
+  for (const char* stage : {"start_s", "read_s", "mechanize_s", "covariance_s", "draw_s"}) {
+    EXPECT_GT(profile[stage], 0) << stage;
+  }
+  EXPECT_FALSE(profile.contains("solve_s"));  // a filter has none
+}
+
 TEST_F(Trip, RunWritesSolutionMetricsAndReport) {
   const std::string out = folder_ / "run";
   const Outcome run = foucault({"run", log_, "--out", out});

@@ -80,17 +80,18 @@ std::unique_ptr<Estimator> make_batch(const Settings& settings, const Mounting& 
 
 const std::vector<Method>& methods() {
   static const std::vector<Method> all{
-      {"ekf", "error-state Kalman filter on a full mechanization (the paper's M0)", make_ekf},
+      {"ekf", "error-state Kalman filter on a full mechanization (the paper's M0)", make_ekf,
+       Stage::mechanize},
       {"refined", "factor graph, preintegration on a rotating Earth (the paper's M1)",
-       make_window<PreintegrationModel::refined>},
+       make_window<PreintegrationModel::refined>, Stage::preintegrate},
       {"rough", "factor graph, the Earth's rotation neglected (M2)",
-       make_window<PreintegrationModel::rough>},
+       make_window<PreintegrationModel::rough>, Stage::preintegrate},
       {"full", "refined with the gravity vector of each place: exact over any distance",
-       make_window<PreintegrationModel::full>},
+       make_window<PreintegrationModel::full>, Stage::preintegrate},
       {"rts", "the filter forward, then a smoother backward: every epoch from all fixes", make_rts,
-       kForever},
+       Stage::mechanize, kForever},
       {"batch", "one factor graph over the whole log: every epoch from all fixes", make_batch,
-       kForever},
+       Stage::propagate, kForever},
   };
   return all;
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "foucault/core/interfaces.h"
+#include "foucault/core/profile.h"
 #include "settings.h"
 
 /// The methods that `run` and `evaluate` know. A new one is a function and a line in methods.cpp.
@@ -17,6 +18,7 @@ struct Method {
   std::string name;
   std::string summary;
   EstimatorFactory make;
+  Stage per_sample;  ///< what a profile calls the work on every IMU sample
   /// How far its epochs may lag behind the measurements [s]; a smoother's come at the end.
   double keep_references_s = 600;
 };

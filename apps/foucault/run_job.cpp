@@ -7,10 +7,12 @@
 #include <variant>
 
 #include "foucault/core/error.h"
+#include "foucault/core/profile.h"
 #include "foucault/rawlog/rawlog_source.h"
 #include "foucault/reports/run_report.h"
 #include "methods.h"
 #include "output_directory.h"
+#include "profile_text.h"
 #include "run_metrics_text.h"
 #include "run_output.h"
 #include "text_file.h"
@@ -29,11 +31,34 @@ void naming(const std::string& log, Work work) {
   }
 }
 
-void process(const std::string& log, RawlogSource& source, Estimator& estimator, RunOutput& output,
-             Console& console) {
-  while (const std::optional<Measurement> measurement = source.next()) {
-    output.measurement(*measurement);
-    naming(log, [&] { estimator.process(*measurement); });
+/// So many that a profile need not look at the clock for each measurement.
+constexpr std::size_t kBatch = 64;
+
+/// Empty at the end of the log.
+void read_batch(RawlogSource& source, std::vector<Measurement>& batch) {
+  const StageTimer timer(Stage::read);
+  batch.clear();
+  while (batch.size() < kBatch) {
+    std::optional<Measurement> measurement = source.next();
+    if (!measurement) return;
+    batch.push_back(std::move(*measurement));
+  }
+}
+
+void process_batch(const std::vector<Measurement>& batch, Estimator& estimator, RunOutput& output) {
+  for (const Measurement& measurement : batch) {
+    output.measurement(measurement);
+    estimator.process(measurement);
+  }
+}
+
+void process(const std::string& log, RawlogSource& source, Estimator& estimator, Stage per_sample,
+             RunOutput& output, Console& console) {
+  std::vector<Measurement> batch;
+  batch.reserve(kBatch);
+  for (read_batch(source, batch); !batch.empty(); read_batch(source, batch)) {
+    const StageTimer timer(per_sample);
+    naming(log, [&] { process_batch(batch, estimator, output); });
     console.progress("processing", source.progress());
   }
   naming(log, [&] { estimator.finish(); });
@@ -48,6 +73,7 @@ reports::RunLabels labels(const RunJob& job, const std::string& config) {
 
 void write_report(const RunResult& result, reports::RunReport& report,
                   const std::filesystem::path& folder, Console& console) {
+  const StageTimer timer(Stage::draw);
   console.progress("drawing", 0);
   for (const reports::KeyNumber& number : key_numbers(result)) report.key_number(number);
   for (const reports::Table& table : metrics_tables(result)) report.table(table);
@@ -57,6 +83,8 @@ void write_report(const RunResult& result, reports::RunReport& report,
 }  // namespace
 
 RunResult run_into(const RunJob& job, const std::filesystem::path& folder, Console& console) {
+  std::optional<Profile> profile;
+  if (job.profile) profile.emplace().add(Stage::start, process_cpu_s());
   const ResourceMeter meter;
   Settings settings = job.settings;
   const std::string config = dump_config(settings);
@@ -68,7 +96,7 @@ RunResult run_into(const RunJob& job, const std::filesystem::path& folder, Conso
   RunOutput output(folder, source.mounting(), settings.output, method.keep_references_s,
                    report ? &*report : nullptr, console);
   const std::unique_ptr<Estimator> estimator = method.make(settings, source.mounting(), output);
-  process(job.log, source, *estimator, output, console);
+  process(job.log, source, *estimator, method.per_sample, output, console);
 
   RunResult result;
   result.method = job.method;
@@ -83,9 +111,10 @@ RunResult run_into(const RunJob& job, const std::filesystem::path& folder, Conso
     throw DataError(fmt::format("'{}': no epoch came out of the data", job.log));
   }
   result.resources = meter.used();
+  if (report) write_report(result, *report, folder, console);
+  if (profile) result.profile = profile->times();
   write_text_file(folder / "metrics.json", metrics_json(result));
   write_text_file(folder / "config.yaml", config);
-  if (report) write_report(result, *report, folder, console);
   return result;
 }
 
@@ -100,6 +129,7 @@ RunResult run(const RunJob& job, Console& console) {
 
 std::vector<std::string> summary_lines(const RunResult& result) {
   std::vector<std::string> lines = metrics_lines(result);
+  for (const std::string& line : profile_lines(result.profile)) lines.push_back(line);
   lines.push_back(fmt::format("written    {}", result.out));
   if (result.report) {
     const std::filesystem::path page = std::filesystem::path(result.out) / "report" / "index.html";

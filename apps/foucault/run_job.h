@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "console.h"
+#include "foucault/core/profile.h"
 #include "foucault/evaluation/run_metrics.h"
 #include "resources.h"
 #include "settings.h"
@@ -17,8 +18,9 @@ struct RunJob {
   std::string log;
   std::string method = "refined";
   Settings settings;
-  std::string out;     ///< folder
-  bool report = true;  ///< draw the figures
+  std::string out;       ///< folder
+  bool report = true;    ///< draw the figures
+  bool profile = false;  ///< time the stages
   std::string command_line;
 };
 
@@ -29,7 +31,8 @@ struct RunResult {
   bool report = true;
   RunMetrics metrics;
   double statistics_from_s = 0;
-  Resources resources;  ///< of reading and estimating, without the report
+  Resources resources;             ///< of reading and estimating, without the report
+  std::vector<StageTime> profile;  ///< of everything, if asked for
   /// Why the log broke off, one line; the results are up to there.
   std::optional<std::string> damage;
 };

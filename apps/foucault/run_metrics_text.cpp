@@ -5,6 +5,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "profile_text.h"
 #include "units.h"
 #include "version.h"
 
@@ -53,6 +54,15 @@ Json reference_json(const ReferenceMetrics& reference) {
           {"velocity_nees", number_or_null(reference.velocity_nees)},
           {"attitude_nees", number_or_null(reference.attitude_nees)},
           {"samples", reference.samples}};
+}
+
+Json profile_json(const std::vector<StageTime>& profile) {
+  Json json = Json::object();
+  for (const StageTime& time : profile) {
+    json[fmt::format("{}_s", stage_name(time.stage))] = time.seconds;
+  }
+  json["total_s"] = total_seconds(profile);
+  return json;
 }
 
 /// "-" if no fix counts for the statistics.
@@ -125,6 +135,7 @@ std::string metrics_json(const RunResult& result) {
   json["wall_s"] = result.resources.wall_s;
   json["peak_rss_mb"] = result.resources.peak_rss_mb;
   json["log"] = result.log;
+  if (!result.profile.empty()) json["profile"] = profile_json(result.profile);
   if (result.damage) json["damage"] = *result.damage;
   json["version"] = kVersion;
   return json.dump(2) + "\n";

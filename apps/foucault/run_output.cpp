@@ -4,6 +4,7 @@
 
 #include <variant>
 
+#include "foucault/core/profile.h"
 #include "foucault/core/time.h"
 #include "units.h"
 
@@ -45,10 +46,22 @@ void RunOutput::measurement(const Measurement& measurement) {
 
 void RunOutput::epoch(const Epoch& epoch) {
   last_epoch_ns_ = epoch.t_ns;
-  solution_.epoch(epoch);
-  if (report_ != nullptr) report_->epoch(epoch);
+  write(epoch);
+  collect(epoch);
+  const StageTimer timer(Stage::statistics);
   if (metrics_) metrics_->epoch(epoch);
   comparison_.add(epoch);
+}
+
+void RunOutput::write(const Epoch& epoch) {
+  const StageTimer timer(Stage::write);
+  solution_.epoch(epoch);
+}
+
+void RunOutput::collect(const Epoch& epoch) {
+  if (report_ == nullptr) return;
+  const StageTimer timer(Stage::draw);
+  report_->epoch(epoch);
 }
 
 void RunOutput::fix(const FixResult& fix) {
@@ -75,6 +88,7 @@ void RunOutput::reference_error(const Epoch& epoch, const ReferenceError& error)
 }
 
 RunMetrics RunOutput::finish() {
+  const StageTimer timer(Stage::write);
   solution_.finish();
   return metrics_ ? metrics_->metrics() : RunMetrics{};
 }

@@ -35,6 +35,8 @@ class RunOutput : public Sink {
   RunMetrics finish();
 
  private:
+  void write(const Epoch& epoch);
+  void collect(const Epoch& epoch);
   void reference_error(const Epoch& epoch, const ReferenceError& error);
 
   Mounting mounting_;

@@ -39,6 +39,7 @@ std::function<void(Call&)> declare_run(CLI::App& app) {
   app.add_option("--out", o->job.out, "Folder for solution.csv, .tum, .kml, metrics.json, report/")
       ->required();
   app.add_flag("--no-report", o->no_report, "Draw no figures");
+  app.add_flag("--profile", o->job.profile, "Say where the time went, stage by stage");
   app.footer(
       "\nExamples:\n"
       "  foucault run trip.rawlog --out trip\n"

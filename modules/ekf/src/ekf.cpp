@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 
+#include "foucault/core/profile.h"
 #include "foucault/core/so3.h"
 
 namespace foucault {
@@ -84,6 +85,7 @@ ekf::Transition EkfNavigator::pending() const {
 
 void EkfNavigator::catch_up() {
   if (integrals_.dt == 0) return;
+  const StageTimer timer(Stage::covariance);
   const ekf::Transition t = pending();
   covariance_ = symmetrized(propagated(covariance_, t));
   covered_ = state_.motion;
@@ -93,6 +95,7 @@ void EkfNavigator::catch_up() {
 
 ekf::Matrix EkfNavigator::covariance() const {
   if (integrals_.dt == 0) return covariance_;
+  const StageTimer timer(Stage::covariance);
   return symmetrized(propagated(covariance_, pending()));
 }
 
@@ -150,6 +153,7 @@ void EkfNavigator::update(const GnssFix& fix) {
 }
 
 void EkfNavigator::apply(const Observation& o) {
+  const StageTimer timer(Stage::update);
   using Gain = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::ColMajor, ekf::kSizeWithScale, 3>;
   const Gain PHt = covariance_ * o.H.transpose();
   const Eigen::Matrix3d S = o.H * PHt + o.noise;

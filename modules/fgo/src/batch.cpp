@@ -4,6 +4,7 @@
 #include <deque>
 
 #include "chain_problem.h"
+#include "foucault/core/profile.h"
 #include "foucault/fgo/chain.h"
 #include "node_epoch.h"
 
@@ -80,6 +81,7 @@ MotionResidual reversed(const MotionResidual& interval) {
 
 /// Information on every node from all before it and from all behind it; their sum's inverse.
 std::vector<Matrix15d> covariances(const BatchGraph& graph) {
+  const StageTimer timer(Stage::covariance);
   const std::size_t nodes = graph.states().size();
   std::vector<Matrix15d> result(nodes);  // the information from before, until it is the covariance
   NodeInformation from_before;
@@ -115,6 +117,7 @@ PreintegrationModel BatchOptions::preintegration_model() const {
 
 BatchSolution solve(BatchChain& chain, const FgoOptions& options, PreintegrationModel model,
                     const ImuNoise& noise) {
+  const StageTimer timer(Stage::solve);
   BatchGraph graph(chain, options);
   graph.optimize();
   if (graph.reintegrate_moved_biases(noise, model)) graph.optimize();

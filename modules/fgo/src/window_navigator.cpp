@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "chain_problem.h"
+#include "foucault/core/profile.h"
 #include "foucault/core/time.h"
 #include "node_epoch.h"
 
@@ -58,6 +59,7 @@ void WindowNavigator::propagate(const ImuIncrement& increment) {
 WindowNavigator::Prediction WindowNavigator::prediction() const {
   const NodeState& x0 = nodes_.back().x;
   if (at_node()) return {x0, covariance_};
+  const StageTimer timer(Stage::covariance);
   const Preintegration pre = measured(*integrator_, model_);
   const NodeState x1 = predict(x0, pre, earth_);
   return {x1, predict_covariance(x0, x1, pre, earth_, covariance_)};
@@ -119,6 +121,7 @@ void WindowNavigator::solve() {
 
 /// Solves for the nodes from `from` on, and for the settled one before them.
 void WindowNavigator::optimize(std::size_t from) {
+  const StageTimer timer(Stage::solve);
   const std::size_t base = from > 0 ? from - 1 : 0;
   PriorFactor prior(from > 0 ? to_prior(nodes_[base].past.information, nodes_[base].past.at)
                              : prior_);
@@ -134,6 +137,7 @@ void WindowNavigator::optimize(std::size_t from) {
 
 /// The quadratic forms of the nodes from `from` on, each at its present state.
 void WindowNavigator::linearize(std::size_t from) {
+  const StageTimer timer(Stage::marginalize);
   for (std::size_t k = from; k < nodes_.size(); ++k) {
     Node& node = nodes_[k];
     node.past = {node.x, own_information(node)};
@@ -148,6 +152,7 @@ void WindowNavigator::linearize(std::size_t from) {
     node.past.information.H += interval.elimination.rest.H;
     node.past.information.b += interval.elimination.rest.b;
   }
+  const StageTimer covariance_timer(Stage::covariance);
   covariance_ = covariance(nodes_.back().past.information);
 }
 
@@ -162,6 +167,7 @@ NodeInformation WindowNavigator::own_information(const Node& node) const {
 
 /// The states before `from` that go with those behind.
 void WindowNavigator::carry_back(std::size_t from) {
+  const StageTimer timer(Stage::solve);
   if (from < 2) return;
   const Node& base = nodes_[from - 1];
   Vector15d d = boxminus(base.x, base.past.at);
@@ -174,10 +180,12 @@ void WindowNavigator::carry_back(std::size_t from) {
 /// The first node whose quadratic form does not hold any more; the number of nodes if all do.
 /// Intervals whose bias has moved are integrated again.
 std::size_t WindowNavigator::first_unsettled() {
+  const StageTimer timer(Stage::solve);
   std::size_t first = nodes_.size();
   for (std::size_t k = nodes_.size(); k-- > 0;) {
     const Node& node = nodes_[k];
     if (k < intervals_.size() && bias_moved(intervals_[k].factor->preintegration(), node.x.bias)) {
+      const StageTimer again(Stage::preintegrate);
       reintegrate(intervals_[k], node.x.bias, noise_, model_);
       first = k + 1;
     }
@@ -196,6 +204,7 @@ bool WindowNavigator::has_moved(const Node& node) const {
 }
 
 void WindowNavigator::marginalize_old() {
+  const StageTimer timer(Stage::marginalize);
   while (nodes_.size() > 1 &&
          seconds_between(nodes_.front().t_ns, nodes_.back().t_ns) > options_.window_s) {
     prior_ = to_prior(intervals_.front().elimination.rest, nodes_[1].past.at);

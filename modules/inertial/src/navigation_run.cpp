@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "foucault/core/error.h"
+#include "foucault/core/profile.h"
 #include "foucault/core/time.h"
 #include "foucault/geodesy/local_frame.h"
 #include "foucault/inertial/increments.h"
@@ -159,6 +160,16 @@ void NavigationRun::count_fix(const GnssFix& fix) {
 
 void NavigationRun::align(const Measurement& measurement) {
   held_.push_back(measurement);
+  show_aligner(measurement);
+  if (aligner_.initial()) {
+    start(*aligner_.initial());
+  } else {
+    drop_what_no_start_needs();
+  }
+}
+
+void NavigationRun::show_aligner(const Measurement& measurement) {
+  const StageTimer timer(Stage::align);
   if (const auto* increment = std::get_if<ImuIncrement>(&measurement)) aligner_.add(*increment);
   if (const auto* fix = std::get_if<GnssFix>(&measurement)) {
     const GnssFix trusted = weighted(*fix, options_.gnss);
@@ -166,11 +177,6 @@ void NavigationRun::align(const Measurement& measurement) {
                         covariance_is_valid(trusted.position_covariance) &&
                         fix->quality >= quality_from(options_.gnss.min_quality);
     if (usable) aligner_.add(trusted);
-  }
-  if (aligner_.initial()) {
-    start(*aligner_.initial());
-  } else {
-    drop_what_no_start_needs();
   }
 }
 

@@ -1,5 +1,6 @@
 #include "foucault/inertial/smoother.h"
 
+#include "foucault/core/profile.h"
 #include "foucault/core/time.h"
 
 namespace foucault {
@@ -86,6 +87,7 @@ void Smoother::Keeper::notice(const Notice& notice) { kept_.emplace_back(notice)
 
 void Smoother::Keeper::give_out(Sink& sink) {
   recording_.mark();  // so that every epoch has a node after it
+  const StageTimer timer(Stage::smooth);
   const std::vector<SmoothedEpoch> nodes = recording_.smoothed();
   const auto give = Overloaded{
       [&](const NodeEpoch& e) { sink.epoch(nodes[e.node].epoch); },

@@ -100,6 +100,7 @@ class NavigationRun : public Estimator {
   void check_order(const ImuIncrement& increment) const;
   void count_fix(const GnssFix& fix);
   void align(const Measurement& measurement);
+  void show_aligner(const Measurement& measurement);
   void start(const Epoch& initial);
   void drop_what_no_start_needs();
 
