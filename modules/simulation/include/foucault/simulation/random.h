@@ -20,7 +20,8 @@ enum class RandomStream : uint32_t {
   accel_bias,
   scale_factor,
   gnss_position,
-  gnss_velocity
+  gnss_velocity,
+  faults
 };
 
 /// Reproducible draws: the same seed and stream give the same numbers.
