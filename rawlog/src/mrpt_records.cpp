@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <type_traits>
 #include <utility>
 
@@ -35,9 +34,17 @@ bool begins_rawlog_object(Bytes bytes) {
   return header && is_rawlog_class(header->name);
 }
 
-bool is_name_character(unsigned char c) {
-  return std::isalnum(c) != 0 || c == '_' || c == ':' || c == '<' || c == '>' || c == ',';
+/// Of class names; every record has one, so a table.
+constexpr std::array<bool, 256> name_characters() {
+  std::array<bool, 256> allowed{};
+  for (const char c : std::string_view("_:<>,")) allowed[static_cast<unsigned char>(c)] = true;
+  for (unsigned char c = '0'; c <= '9'; ++c) allowed[c] = true;
+  for (unsigned char c = 'A'; c <= 'Z'; ++c) allowed[c] = allowed[c + 'a' - 'A'] = true;
+  return allowed;
 }
+constexpr std::array<bool, 256> kNameCharacters = name_characters();
+
+bool is_name_character(unsigned char c) { return kNameCharacters[c]; }
 
 /// A nested object whose class must be `name` (before MRPT 2: without name spaces); its version.
 int nested(RecordCursor& cursor, std::string_view name) {

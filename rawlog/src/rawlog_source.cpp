@@ -19,11 +19,12 @@ namespace foucault {
 using rawlog::LoggedObservation;
 
 void RawlogOptions::fields(ConfigFields& f) {
+  constexpr double kLongestReorder = 1e6;
   f.text("imu_label", imu_label, {}, "sensor label of the IMU; empty: the first one");
   f.text("gnss_label", gnss_label, {},
          "sensor label of the GNSS receiver; empty: the first one with a position");
   f.text("reference_label", reference_label, {}, "sensor label of the reference trajectory");
-  f.number("reorder_s", reorder_s, kNotNegative, "fixes may come this late [s]");
+  f.number("reorder_s", reorder_s, {0, kLongestReorder}, "fixes may come this late [s]");
   f.flag("gnss_velocity", gnss_velocity, "read the receiver's velocities");
 }
 

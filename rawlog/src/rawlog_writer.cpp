@@ -7,6 +7,7 @@
 
 #include "files.h"
 #include "foucault/core/error.h"
+#include "foucault/core/time.h"
 #include "gz_archive.h"
 #include "mrpt_convert.h"
 
@@ -29,8 +30,18 @@ void require(bool ok, const char* what, int64_t t_ns) {
                               rawlog::describe_stamp(t_ns)));
 }
 
+void require_stamp(int64_t t_ns) {
+  if (rawlog::in_range_of_stamps(t_ns)) return;
+  throw DataError(
+      fmt::format("the stamp {:.0f} s since 1970 is none of the years 1950 to 2150; check "
+                  "the time system of the input",
+                  to_seconds(t_ns)));
+}
+
 /// Increment over the interval between the stamps as MRPT holds them.
 ImuSample mean_rates(const ImuIncrement& increment) {
+  require_stamp(increment.t_begin_ns);
+  require_stamp(increment.t_end_ns);
   const int64_t begin_ns = rawlog::quantized(increment.t_begin_ns);
   const int64_t end_ns = rawlog::quantized(increment.t_end_ns);
   if (end_ns <= begin_ns) {
@@ -57,6 +68,7 @@ class RawlogWriter::Impl {
   }
 
   void write(const ImuSample& sample) {
+    require_stamp(sample.t_ns);
     require(sample.gyro_b.allFinite() && sample.accel_b.allFinite(), "the IMU sample", sample.t_ns);
     rawlog::encode_imu(sample, imu_);
     archive_.WriteObject(imu_);
@@ -70,6 +82,7 @@ class RawlogWriter::Impl {
   }
 
   void write(const GnssFix& fix) {
+    require_stamp(fix.t_ns);
     require(finite(fix.antenna) && fix.position_covariance.allFinite() &&
                 (!fix.velocity_n ||
                  (fix.velocity_n->allFinite() && fix.velocity_covariance.allFinite())) &&
@@ -83,6 +96,7 @@ class RawlogWriter::Impl {
   }
 
   void write(const ReferencePose& pose) {
+    require_stamp(pose.t_ns);
     require(finite(pose.position), "the reference pose", pose.t_ns);
     reference_.timestamp = rawlog::to_mrpt(pose.t_ns);
     reference_.originalReceivedTimestamp = reference_.timestamp;
@@ -91,6 +105,7 @@ class RawlogWriter::Impl {
   }
 
   void write(const WheelSpeed& speed) {
+    require_stamp(speed.t_ns);
     require(std::isfinite(speed.forward), "the wheel speed", speed.t_ns);
     odometry_.timestamp = rawlog::to_mrpt(speed.t_ns);
     odometry_.velocityLocal.vx = speed.forward;

@@ -48,7 +48,7 @@ std::optional<ImuIncrement> Incrementer::add(const ImuSample& sample) {
   learn_interval(interval_ns);
   if (!interval_known()) return std::nullopt;
 
-  const bool hole = 2 * interval_ns > 3 * nominal_ns_;
+  const bool hole = interval_ns > nominal_ns_ + nominal_ns_ / 2;
   const bool trapezoid = kind_ == SampleKind::instantaneous && !hole;
   ImuIncrement increment;
   increment.t_begin_ns = hole ? sample.t_ns - nominal_ns_ : previous.t_ns;

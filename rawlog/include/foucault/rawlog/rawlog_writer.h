@@ -30,8 +30,8 @@ int64_t stamp(const Record& record);
 /// p_b_a; forward-left-up as MRPT has it.
 ///
 /// The file appears under its name in finish(), whole, or not at all: until then it lies beside,
-/// and the destructor removes it. Throws DataError if it cannot be written or a value is not
-/// finite.
+/// and the destructor removes it. Throws DataError if it cannot be written, a value is not finite
+/// or a stamp outside the years 1950 to 2150.
 class RawlogWriter {
  public:
   explicit RawlogWriter(const std::string& path, const Mounting& mounting = {});
