@@ -16,14 +16,6 @@ namespace {
 
 constexpr double kPpm = 1e-6;
 
-ekf::Matrix propagated(const ekf::Matrix& covariance, const ekf::Transition& t) {
-  ekf::Matrix half(covariance.rows(), covariance.cols());
-  half.noalias() = t.phi * covariance;
-  ekf::Matrix next = t.q;
-  next.noalias() += half * t.phi.transpose();
-  return next;
-}
-
 ekf::Matrix symmetrized(const ekf::Matrix& m) { return 0.5 * (m + m.transpose()); }
 
 }  // namespace
@@ -87,7 +79,7 @@ void EkfNavigator::catch_up() {
   if (integrals_.dt == 0) return;
   const StageTimer timer(Stage::covariance);
   const ekf::Transition t = pending();
-  covariance_ = symmetrized(propagated(covariance_, t));
+  covariance_ = ekf::propagated(covariance_, t);
   covered_ = state_.motion;
   integrals_ = {};
   stepped(t.phi);
@@ -96,7 +88,7 @@ void EkfNavigator::catch_up() {
 ekf::Matrix EkfNavigator::covariance() const {
   if (integrals_.dt == 0) return covariance_;
   const StageTimer timer(Stage::covariance);
-  return symmetrized(propagated(covariance_, pending()));
+  return ekf::propagated(covariance_, pending());
 }
 
 Epoch EkfNavigator::epoch() const {

@@ -120,6 +120,49 @@ void set_markov(int row, double dt, const MarkovBias& process, Transition& t) {
       -std::expm1(-2 * dt / process.tau) * variance * Eigen::Matrix3d::Identity();
 }
 
+/// The rows of position, velocity and attitude. Those of the sensors' errors below hold nothing but
+/// their decay on the diagonal, so that products come down to these rows.
+constexpr int kMotion = 9;
+using MotionRows =
+    Eigen::Matrix<double, kMotion, Eigen::Dynamic, Eigen::ColMajor, kMotion, kSizeWithScale>;
+
+/// X times a matrix of `rows` above the diagonal `decay`.
+MotionRows times(const MotionRows& X, const MotionRows& rows, const Vector& decay) {
+  MotionRows out(kMotion, X.cols());
+  out.noalias() = X.leftCols<kMotion>() * rows;
+  out.rightCols(decay.size()) += X.rightCols(decay.size()) * decay.asDiagonal();
+  return out;
+}
+
+/// Exponential series of the dynamics scaled by `share`, to the third order: rows, and diagonal of
+/// the rest.
+struct Series {
+  MotionRows rows;
+  Vector diagonal;
+};
+struct Powers {
+  MotionRows first, second, third;
+  Vector decay;
+};
+Series series(const Powers& a, double share) {
+  const double s2 = share * share / 2;
+  const double s3 = share * share * share / 6;
+  Series out;
+  out.rows = share * a.first + s2 * a.second + s3 * a.third;
+  out.rows.leftCols<kMotion>().diagonal().array() += 1;
+  const auto d = a.decay.array();
+  out.diagonal = 1 + share * d + s2 * d * d + s3 * d * d * d;
+  return out;
+}
+
+/// Adds weight * S V S^T, V diagonal. The rest's own block is set_markov()'s.
+void add_driven(double weight, const Series& s, const Vector& variance, Matrix& q) {
+  const Eigen::Index rest = s.diagonal.size();
+  const MotionRows driven = weight * s.rows * variance.asDiagonal();
+  q.topLeftCorner<kMotion, kMotion>().noalias() += driven * s.rows.transpose();
+  q.topRightCorner(kMotion, rest) += driven.rightCols(rest) * s.diagonal.asDiagonal();
+}
+
 /// Attitude errors in b: at the begin dtheta = C0' psi, at the end dtheta = C1' psi.
 void turn_attitude_to_body(const Eigen::Matrix3d& C0, const Eigen::Matrix3d& C1, Transition& t) {
   t.phi.middleRows<3>(kAttitude) = (C1.transpose() * t.phi.middleRows<3>(kAttitude)).eval();
@@ -180,23 +223,23 @@ Transition transition(const MotionIntegrals& integrals, const StrapdownState& be
                       const StrapdownState& end, const ProcessNoise& noise) {
   const Eigen::Vector3d v_n = 0.5 * (begin.v_n + end.v_n);
   const Place place(displaced(begin.position, 0.5 * integrals.dt * v_n, Place(begin.position)));
-  const Matrix a = mean_dynamics(integrals, place, v_n, noise);
-  Matrix a2(a.rows(), a.cols());
-  Matrix a3(a.rows(), a.cols());
-  a2.noalias() = a * a;
-  a3.noalias() = a2 * a;
-  const Matrix identity = Matrix::Identity(a.rows(), a.cols());
-  const Matrix half = identity + a / 2 + a2 / 8 + a3 / 48;  // from mid-interval to its end
+  const Matrix dynamics = mean_dynamics(integrals, place, v_n, noise);
+  const Eigen::Index rest = dynamics.rows() - kMotion;
+  Powers a{dynamics.topRows<kMotion>(), {}, {}, dynamics.diagonal().tail(rest)};
+  a.second = times(a.first, a.first, a.decay);
+  a.third = times(a.second, a.first, a.decay);
+  const Series whole = series(a, 1);
+  const Series half = series(a, 0.5);  // from mid-interval to its end
 
   Transition t;
-  t.phi = identity + a + a2 / 2 + a3 / 6;
+  t.phi = Matrix::Zero(dynamics.rows(), dynamics.cols());
+  t.phi.topRows<kMotion>() = whole.rows;
   const Vector variance = driving_variance(integrals, noise);
-  const Matrix half_driven = half * variance.asDiagonal();
-  const Matrix full_driven = t.phi * variance.asDiagonal();
-  t.q.resize(a.rows(), a.cols());
-  t.q.noalias() = (4.0 / 6) * half_driven * half.transpose();
-  t.q.noalias() += (1.0 / 6) * full_driven * t.phi.transpose();
+  t.q = Matrix::Zero(dynamics.rows(), dynamics.cols());
+  add_driven(4.0 / 6, half, variance, t.q);
+  add_driven(1.0 / 6, whole, variance, t.q);
   t.q.diagonal() += variance / 6;
+  t.q.bottomLeftCorner(rest, kMotion) = t.q.topRightCorner(kMotion, rest).transpose();
 
   set_markov(kGyroBias, integrals.dt, gyro_markov_bias(noise.imu), t);
   set_markov(kAccelBias, integrals.dt, accel_markov_bias(noise.imu), t);
@@ -206,6 +249,22 @@ Transition transition(const MotionIntegrals& integrals, const StrapdownState& be
   }
   turn_attitude_to_body(begin.q_n_b.toRotationMatrix(), end.q_n_b.toRotationMatrix(), t);
   return t;
+}
+
+Matrix propagated(const Matrix& covariance, const Transition& t) {
+  const Eigen::Index rest = covariance.rows() - kMotion;
+  const MotionRows rows = t.phi.topRows<kMotion>();
+  const Vector decay = t.phi.diagonal().tail(rest);
+  MotionRows carried(kMotion, covariance.cols());
+  carried.noalias() = rows * covariance;
+  Matrix next = t.q;
+  next.topLeftCorner<kMotion, kMotion>().noalias() += carried * rows.transpose();
+  const MotionRows cross = carried.rightCols(rest) * decay.asDiagonal();
+  next.topRightCorner(kMotion, rest) += cross;
+  next.bottomLeftCorner(rest, kMotion) += cross.transpose();
+  next.bottomRightCorner(rest, rest) +=
+      decay.asDiagonal() * covariance.bottomRightCorner(rest, rest) * decay.asDiagonal();
+  return 0.5 * (next + next.transpose());
 }
 
 }  // namespace foucault::ekf

@@ -79,4 +79,7 @@ struct Transition {
 Transition transition(const MotionIntegrals& integrals, const StrapdownState& begin,
                       const StrapdownState& end, const ProcessNoise& noise);
 
+/// phi P phi' + q, by the rows of the motion and the diagonal that the rest of phi is.
+Matrix propagated(const Matrix& covariance, const Transition& transition);
+
 }  // namespace foucault::ekf
