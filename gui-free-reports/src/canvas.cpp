@@ -11,7 +11,9 @@ namespace {
 
 constexpr int kFine = 4;             // fine pixels a pixel, each way
 constexpr int kShift = 4;            // fractional bits of fine coordinates
-constexpr double kMargin = 64;       // shapes are cut this far outside of what is seen [px]
+constexpr int kBand = 64;            // height of the fine mask [px]: 2 MB, within reach of a cache
+constexpr double kMargin = 64;       // lines are cut this far outside of what is seen [px]
+constexpr double kFar = 8192;        // corners are moved this close [px], for whole numbers
 constexpr double kCapHeight = 0.73;  // of DejaVu Sans, in em
 
 int pixels(double points) { return static_cast<int>(std::lround(points * kPixelsPerPoint)); }
@@ -48,21 +50,31 @@ class FineMask {
     fine_.setTo(0);
   }
 
+  /// Nothing was drawn.
+  bool blank() const { return blank_; }
+
   void line(const cv::Point2d& a, const cv::Point2d& b, double width) {
     cv::Point2d p = a;
     cv::Point2d q = b;
     if (!cut(p, q)) return;
+    blank_ = false;
     const int thickness = std::max(1, int(std::lround(width * kFine)));
     cv::line(fine_, fixed(p), fixed(q), kOn, thickness, cv::LINE_8, kShift);
   }
 
   void disc(const cv::Point2d& centre, double radius, double ring_width = 0) {
+    if (misses(centre.y - radius - ring_width, centre.y + radius + ring_width)) return;
+    blank_ = false;
     const int fixed_radius = int(std::lround(radius * kFine * (1 << kShift)));
     const int thickness = ring_width > 0 ? int(std::lround(ring_width * kFine)) : cv::FILLED;
     cv::circle(fine_, fixed(centre), fixed_radius, kOn, thickness, cv::LINE_8, kShift);
   }
 
   void convex(const Polyline& corners) {
+    const auto by_height = [](const cv::Point2d& a, const cv::Point2d& b) { return a.y < b.y; };
+    const auto [top, bottom] = std::minmax_element(corners.begin(), corners.end(), by_height);
+    if (misses(top->y, bottom->y)) return;
+    blank_ = false;
     std::vector<cv::Point> points;
     points.reserve(corners.size());
     for (const cv::Point2d& corner : corners) points.push_back(fixed(clamped(corner)));
@@ -87,8 +99,13 @@ class FineMask {
   }
 
   cv::Point2d clamped(const cv::Point2d& p) const {
-    return {std::clamp(p.x, area_.x - kMargin, area_.br().x + kMargin),
-            std::clamp(p.y, area_.y - kMargin, area_.br().y + kMargin)};
+    return {std::clamp(p.x, area_.x - kFar, area_.br().x + kFar),
+            std::clamp(p.y, area_.y - kFar, area_.br().y + kFar)};
+  }
+
+  /// Nothing of what lies between these heights is in the area.
+  bool misses(double top, double bottom) const {
+    return bottom < area_.y - 1 || top > area_.br().y + 1;
   }
 
   /// Cuts the segment to the neighbourhood of the area (Liang and Barsky); false if none is left.
@@ -115,6 +132,7 @@ class FineMask {
 
   cv::Rect area_;
   cv::Mat fine_;
+  bool blank_ = true;
 };
 
 std::vector<Polyline> dashes(const Polyline& line, double on, double off) {
@@ -143,6 +161,14 @@ std::vector<Polyline> dashes(const Polyline& line, double on, double off) {
     if (drawing) current.push_back(line[i + 1]);
   }
   if (drawing && current.size() > 1) result.push_back(current);
+  return result;
+}
+
+std::vector<Polyline> dashes(const std::vector<Polyline>& lines, double width) {
+  std::vector<Polyline> result;
+  for (const Polyline& line : lines) {
+    for (Polyline& dash : dashes(line, 4.5 * width, 3 * width)) result.push_back(std::move(dash));
+  }
   return result;
 }
 
@@ -252,36 +278,46 @@ Typesetter::Ink Typesetter::set(const std::string& text, double points, bool bol
 Canvas::Canvas(cv::Size size, Typesetter& typesetter)
     : image_(size, CV_8UC3, cv::Scalar::all(255)), typesetter_(typesetter) {}
 
+/// In bands: a mask of the whole area would take sixteen times its pixels.
+template <class Draw>
+void Canvas::cover(const cv::Rect& area, Rgb colour, double opacity, Draw draw) {
+  for (int top = area.y; top < area.br().y; top += kBand) {
+    const cv::Rect band(area.x, top, area.width, std::min(kBand, area.br().y - top));
+    FineMask mask(band, scratch_);
+    draw(mask);
+    if (!mask.blank()) blend(mask.coverage(), band.tl(), colour, opacity);
+  }
+}
+
 void Canvas::polylines(const std::vector<Polyline>& lines, const Pen& pen, const cv::Rect& clip) {
   const cv::Rect area = bounds(lines, pen.width + 1, clip);
   if (area.empty()) return;
-  FineMask mask(area, scratch_);
-  for (const Polyline& line : lines) {
-    const std::vector<Polyline> parts =
-        pen.dashed ? dashes(line, 4.5 * pen.width, 3 * pen.width) : std::vector<Polyline>{line};
+  const std::vector<Polyline> dashed =
+      pen.dashed ? dashes(lines, pen.width) : std::vector<Polyline>();
+  const std::vector<Polyline>& parts = pen.dashed ? dashed : lines;
+  cover(area, pen.colour, pen.opacity, [&](FineMask& mask) {
     for (const Polyline& part : parts) {
       for (size_t i = 0; i + 1 < part.size(); ++i) mask.line(part[i], part[i + 1], pen.width);
     }
-  }
-  blend(mask.coverage(), area.tl(), pen.colour, pen.opacity);
+  });
 }
 
 void Canvas::polygons(const std::vector<Polyline>& convex, Rgb colour, double opacity,
                       const cv::Rect& clip) {
   const cv::Rect area = bounds(convex, 1, clip);
   if (area.empty()) return;
-  FineMask mask(area, scratch_);
-  for (const Polyline& polygon : convex) mask.convex(polygon);
-  blend(mask.coverage(), area.tl(), colour, opacity);
+  cover(area, colour, opacity, [&](FineMask& mask) {
+    for (const Polyline& polygon : convex) mask.convex(polygon);
+  });
 }
 
 void Canvas::markers(const Polyline& places, Shape shape, double diameter, Rgb colour,
                      double opacity, const cv::Rect& clip) {
   const cv::Rect area = bounds({places}, diameter + 1, clip);
   if (area.empty()) return;
-  FineMask mask(area, scratch_);
-  for (const cv::Point2d& place : places) add_marker(mask, shape, place, diameter);
-  blend(mask.coverage(), area.tl(), colour, opacity);
+  cover(area, colour, opacity, [&](FineMask& mask) {
+    for (const cv::Point2d& place : places) add_marker(mask, shape, place, diameter);
+  });
 }
 
 void Canvas::arrowheads(const Polyline& tips, bool up, double size, Rgb colour,

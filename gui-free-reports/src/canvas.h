@@ -82,10 +82,13 @@ class Canvas {
   void text(const std::string& text, cv::Point2d at, const TextStyle& style);
 
  private:
+  /// Blends what `draw(mask)` draws, which is called for one part of the area after the other.
+  template <class Draw>
+  void cover(const cv::Rect& area, Rgb colour, double opacity, Draw draw);
   void blend(const cv::Mat& coverage, cv::Point top_left, Rgb colour, double opacity);
 
   cv::Mat image_;
-  std::vector<uchar> scratch_;  // for the fine coverage; kept, as it is large
+  std::vector<uchar> scratch_;  // for the fine coverage; kept
   Typesetter& typesetter_;
 };
 

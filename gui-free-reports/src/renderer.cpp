@@ -2,12 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <opencv2/imgcodecs.hpp>
-
 #include "canvas.h"
 #include "foucault/core/error.h"
 #include "layout.h"
 #include "panel_painter.h"
+#include "png.h"
 #include "style.h"
 
 namespace foucault::reports {
@@ -76,9 +75,7 @@ class Renderer::Implementation {
     paint_titles(figure, canvas);
     layout.legend->draw(canvas, {style::kOuter, layout.legend_top});
     for (const PlacedPanel& panel : layout.panels) paint_panel(panel, canvas);
-    std::vector<unsigned char> bytes;
-    cv::imencode(".png", canvas.image(), bytes, {cv::IMWRITE_PNG_COMPRESSION, 5});
-    return bytes;
+    return to_png(canvas.image());
   }
 
  private:
