@@ -84,7 +84,7 @@ std::array<size_t, 3> three(const Columns& columns, const Roles& roles) {
 int64_t parse_date(const std::string& date, const std::string& section) {
   std::tm utc{};
   const char* end = strptime(date.c_str(), "%Y-%m-%d", &utc);
-  if (end == nullptr || *end != '\0') {
+  if (end == nullptr || *end != '\0' || utc.tm_year < 50 || utc.tm_year > 250) {
     throw UsageError(fmt::format("{}.time.date: '{}' is no date; write YYYY-MM-DD", section, date));
   }
   return static_cast<int64_t>(timegm(&utc)) * kNanosecondsPerSecond;
@@ -519,8 +519,8 @@ TimeColumn::TimeColumn(const TimeMapping& mapping, const Columns& columns)
 
 int64_t TimeColumn::stamp(const Row& row) const {
   const int64_t time_ns = row.scaled(time_, decimals_) + origin_ns_ + offset_ns_;
-  if (!gps_) return time_ns;
-  return gps_stamp(week_column_ ? row.integer(*week_column_) : week_, time_ns);
+  if (!gps_) return checked_stamp(row, time_ns);
+  return gps_stamp(row, week_column_ ? row.integer(*week_column_) : week_, time_ns);
 }
 
 ImportMapping load_mapping(const MappingSource& source) {

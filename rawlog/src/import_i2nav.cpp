@@ -59,7 +59,7 @@ class WeekClock {
     if (ends_week(last_ns_) && begins_week(sow_ns)) ++week_;
     if (begins_week(last_ns_) && ends_week(sow_ns)) --week_;
     last_ns_ = sow_ns;
-    return rawlog::gps_stamp(week_, sow_ns);
+    return rawlog::gps_stamp(row, week_, sow_ns);
   }
 
  private:
@@ -213,7 +213,7 @@ class ReferenceReader : public RecordReader {
     pose.position = position(row, 2);
     pose.velocity_n = vector(row, 5);
     pose.q_n_v = so3::from_euler({euler.x(), euler.y(), euler.z()});
-    pose.t_ns = rawlog::gps_stamp(row.integer(0), row.scaled(1, kNanosecondDecimals));
+    pose.t_ns = rawlog::gps_stamp(row, row.integer(0), row.scaled(1, kNanosecondDecimals));
     order_.check(row, pose.t_ns);
     return pose;
   }

@@ -12,6 +12,7 @@ namespace {
 const std::vector<std::string> kAngleUnits{"deg", "rad"};
 const std::vector<std::string> kHeights{"ellipsoidal", "msl"};
 constexpr Range kAnyNumber{};
+constexpr Range kSeconds{-1e9, 1e9};  // some thirty years
 
 /// "x", "+y", "-z" as a unit vector of the sensor.
 Eigen::RowVector3d axis(const std::string& name) {
@@ -53,9 +54,9 @@ void TimeMapping::fields(ConfigFields& f) {
   f.text("unit", unit, {"s", "ms", "us", "ns"}, "unit of the time column");
   f.optional_number("gps_week", gps_week, {0, 10000}, "GPS week, for gps_sow and boot");
   f.text("date", date, {}, "YYYY-MM-DD, UTC, for seconds_of_day");
-  f.optional_number("boot_sow", boot_sow, kAnyNumber,
+  f.optional_number("boot_sow", boot_sow, kSeconds,
                     "second of the GPS week at which the boot clock was zero [s]");
-  f.number("offset_s", offset_s, kAnyNumber, "true time = stamp + offset_s [s]");
+  f.number("offset_s", offset_s, kSeconds, "true time = stamp + offset_s [s]");
 }
 
 void TableMapping::fields(ConfigFields& f) {

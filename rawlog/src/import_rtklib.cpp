@@ -80,7 +80,7 @@ int64_t date_ns(const Row& row) {
   const std::string date(row.text(0));
   std::tm day{};
   const char* end = strptime(date.c_str(), "%Y/%m/%d", &day);
-  if (end == nullptr || *end != '\0') {
+  if (end == nullptr || *end != '\0' || day.tm_year < 50 || day.tm_year > 250) {
     row.fail(fmt::format("'{}' is no date; correct or remove the row", date));
   }
   return static_cast<int64_t>(timegm(&day)) * kNanosecondsPerSecond;
@@ -89,8 +89,8 @@ int64_t date_ns(const Row& row) {
 /// hh:mm:ss.sss as nanoseconds.
 int64_t time_of_day_ns(const Row& row) {
   const std::string_view text = row.text(1);
-  int hours = 0;
-  int minutes = 0;
+  unsigned char hours = 0;
+  unsigned char minutes = 0;
   double seconds = 0;
   const char* end = text.data() + text.size();
   const auto h = std::from_chars(text.data(), end, hours);
@@ -176,10 +176,11 @@ class PosReader : public rawlog::RecordReader {
   int64_t stamp(const Row& row) const {
     if (row.text(0).find('/') == std::string_view::npos) {
       const int64_t tow_ns = row.scaled(1, kNanosecondDecimals) + offset_ns_;
-      return rawlog::gps_stamp(row.integer(0), tow_ns);
+      return rawlog::gps_stamp(row, row.integer(0), tow_ns);
     }
     const int64_t t_ns = date_ns(row) + time_of_day_ns(row) + offset_ns_;
-    return header_.utc ? t_ns : rawlog::gps_stamp(0, t_ns - kGpsEpochUnixNs);
+    return header_.utc ? rawlog::checked_stamp(row, t_ns)
+                       : rawlog::gps_stamp(row, 0, t_ns - kGpsEpochUnixNs);
   }
 
   /// North, east, down from columns like sdn, sde, sdu and, if there, sdne, sdeu, sdun.

@@ -173,11 +173,27 @@ Geodetic checked_position(const Row& row, double latitude, double longitude, dou
   return {latitude, longitude, height};
 }
 
-int64_t gps_stamp(int64_t week, int64_t tow_ns) {
+int64_t checked_stamp(const Row& row, int64_t t_ns) {
+  if (!in_range_of_stamps(t_ns)) {
+    row.fail(
+        "its time is none of the years 1950 to 2150; check column, unit and system of the "
+        "time, correct or remove the row");
+  }
+  return t_ns;
+}
+
+int64_t gps_stamp(const Row& row, int64_t week, int64_t tow_ns) {
   constexpr int64_t kWeekNs = 604'800 * kNanosecondsPerSecond;
+  constexpr int64_t kLastWeek = 10'000;
   int64_t weeks = tow_ns / kWeekNs;
   if (tow_ns % kWeekNs < 0) --weeks;
-  return gps_to_unix_ns(GpsTime{static_cast<int>(week + weeks), tow_ns - weeks * kWeekNs});
+  const int64_t full_week = week + weeks;
+  if (full_week < 0 || full_week > kLastWeek) {
+    row.fail(fmt::format("GPS week {} lies outside 0 to {}; correct or remove the row", full_week,
+                         kLastWeek));
+  }
+  const GpsTime time{static_cast<int>(full_week), tow_ns - weeks * kWeekNs};
+  return checked_stamp(row, gps_to_unix_ns(time));
 }
 
 }  // namespace foucault::rawlog

@@ -45,7 +45,10 @@ ImportSummary run_import(const ImportOptions& options, ImportInputs inputs);
 /// Latitude, longitude [rad], height [m] within their ranges, else a RowError.
 Geodetic checked_position(const Row& row, double latitude, double longitude, double height);
 
-/// A stamp from GPS week and time in it [ns], which may lie outside one week.
-int64_t gps_stamp(int64_t week, int64_t tow_ns);
+/// The stamp of a row, if it is one that a rawlog can hold. Throws RowError.
+int64_t checked_stamp(const Row& row, int64_t t_ns);
+
+/// GPS week and second of week, which may lie outside its week, of a row. Throws RowError.
+int64_t gps_stamp(const Row& row, int64_t week, int64_t tow_ns);
 
 }  // namespace foucault::rawlog

@@ -16,7 +16,7 @@ namespace foucault::rawlog {
 namespace {
 
 constexpr size_t kInputSize = size_t{1} << 16;
-constexpr size_t kBufferSize = 4 * InflatedFile::kWindow;
+constexpr size_t kBufferSize = 3 * InflatedFile::kWindow;
 constexpr int kGzipOnly = 16 + MAX_WBITS;
 constexpr unsigned char kGzipMagic[] = {0x1F, 0x8B};
 

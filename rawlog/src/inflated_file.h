@@ -25,7 +25,7 @@ class InflatedFile {
  public:
   enum class End { none, clean, truncated, damaged, unreadable };
   /// The window shows at least so many bytes unless the contents end within.
-  static constexpr size_t kWindow = size_t{1} << 16;
+  static constexpr size_t kWindow = size_t{1} << 15;
 
   /// Throws DataError if the file is missing, a directory, empty or cannot be read.
   explicit InflatedFile(const std::string& path);

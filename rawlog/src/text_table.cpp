@@ -76,7 +76,8 @@ int64_t Row::integer(size_t column) const {
 
 int64_t Row::scaled(size_t column, int decimals) const {
   const double rounded = number(column) * std::pow(10.0, decimals);
-  if (!(std::abs(rounded) < 9.2e18)) {
+  constexpr double kMost = 6.5e18;  // leaves room for offsets
+  if (!(std::abs(rounded) < kMost)) {
     fail(fmt::format("column {} is '{}', out of range; correct or remove the row", column + 1,
                      text(column)));
   }

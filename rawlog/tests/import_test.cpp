@@ -64,6 +64,13 @@ class I2nav : public ::testing::Test {
   I2navImport options_;
 };
 
+TEST_F(I2nav, WeeksThatDoNotExist) {
+  options_.gps_week = 22'000;
+  EXPECT_THAT(data_error(), HasSubstr("GPS week 22000 lies outside 0 to 10000"));
+  options_.gps_week = 9'999;
+  EXPECT_THAT(data_error(), HasSubstr("none of the years 1950 to 2150"));
+}
+
 TEST_F(I2nav, IncrementsFixAndLeverArm) {
   options_.lever_arm = {0.1, -0.3, -0.8};
   options_.quality = FixQuality::fixed_rtk;
