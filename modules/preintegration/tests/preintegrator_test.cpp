@@ -7,6 +7,7 @@
 #include <unsupported/Eigen/MatrixFunctions>
 
 #include "closed_form_motion.h"
+#include "dense_preintegrator.h"
 #include "foucault/inertial/increments.h"
 
 namespace foucault {
@@ -15,6 +16,7 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using testing::ClosedFormMotion;
+using testing::DensePreintegrator;
 using testing::preintegrate;
 using testing::wuhan_earth;
 using namespace error_state;
@@ -30,70 +32,33 @@ ImuNoise loud_noise() {
   return noise;
 }
 
-/// The paper's (35)-(43) with plain 15x15 products, in the attitude error of b(t), discretized as
-/// the exact derivative of one step; the reference for the structured form.
-class DensePreintegrator {
- public:
-  DensePreintegrator(const ImuNoise& noise, const ImuIncrement& before)
-      : noise_(noise), before_(before) {}
-
-  void add(const ImuIncrement& inc) {
-    const double dt = inc.dt();
-    const Matrix3d C = q_.toRotationMatrix();
-    const Vector3d u =
-        velocity_with_sculling(before_.dtheta_b, before_.dvel_b, inc.dtheta_b, inc.dvel_b);
-    q_ = q_ * so3::exp(rotation_with_coning(before_.dtheta_b, inc.dtheta_b));
-    const Matrix3d C_next = q_.toRotationMatrix();
-    const Matrix3d D = 0.5 * dt * (C + C_next);
-
-    Matrix15d phi = Matrix15d::Identity();
-    const Matrix3d Y = so3::skew(C * u);
-    phi.block<3, 3>(kAttitude, kAttitude) = C_next.transpose() * C;
-    phi.block<3, 3>(kAttitude, kGyroBias) = -C_next.transpose() * D;
-    Eigen::Matrix<double, 3, 15> w = Eigen::Matrix<double, 3, 15>::Zero();
-    w.block<3, 3>(0, kAttitude) = -Y * C;
-    w.block<3, 3>(0, kGyroBias) = 0.5 * dt * Y * C;
-    w.block<3, 3>(0, kAccelBias) = -D;
-    phi.middleRows<3>(kVelocity) += w;
-    phi.block<3, 3>(kPosition, kVelocity) = dt * Matrix3d::Identity();
-    phi.middleRows<3>(kPosition) += 0.5 * dt * w;
-    phi.middleCols<3>(kGyroBias).middleRows<3>(kGyroBias) *=
-        std::exp(-dt / gyro_markov_bias(noise_).tau);
-    phi.middleCols<3>(kAccelBias).middleRows<3>(kAccelBias) *=
-        std::exp(-dt / accel_markov_bias(noise_).tau);
-
-    Vector15d W = Vector15d::Zero();
-    W.segment<3>(kVelocity).setConstant(std::pow(noise_.accel_noise_density, 2));
-    W.segment<3>(kAttitude).setConstant(std::pow(noise_.gyro_noise_density, 2));
-    W.segment<3>(kGyroBias).setConstant(noise_.gyro_bias_power());
-    W.segment<3>(kAccelBias).setConstant(noise_.accel_bias_power());
-    const Matrix15d half = 0.5 * dt * Matrix15d(W.asDiagonal());
-    covariance = phi * (covariance + half) * phi.transpose() + half;
-    before_ = inc;
-  }
-
-  Matrix15d covariance = Matrix15d::Zero();
-
- private:
-  ImuNoise noise_;
-  ImuIncrement before_;
-  Eigen::Quaterniond q_ = Eigen::Quaterniond::Identity();
-};
-
 /// |A - B| with every entry in units of B's own sigmas.
 double normalized_difference(const Matrix15d& A, const Matrix15d& B) {
   const Vector15d s = B.diagonal().cwiseSqrt().cwiseInverse();
   return (s.asDiagonal() * (A - B) * s.asDiagonal()).cwiseAbs().maxCoeff();
 }
 
-TEST(Preintegrator, StructuredCovarianceEqualsDenseProducts) {
+TEST(Preintegrator, StructuredFormEqualsDenseProducts) {
   const ClosedFormMotion motion(wuhan_earth());
   const std::vector<ImuIncrement> increments = motion.increments(3, 4, 200);
-  DensePreintegrator dense(loud_noise(), increments.front());
-  for (std::size_t i = 1; i < increments.size(); ++i) dense.add(increments[i]);
-  const Matrix15d structured = preintegrate(increments, loud_noise()).covariance;
-  // Same arithmetic in another order: rounding only.
-  EXPECT_LT(normalized_difference(structured, dense.covariance), 1e-12);
+  const ImuBias bias{{0.01, -0.02, 0.015}, {0.1, 0.05, -0.2}};
+  DensePreintegrator products(loud_noise(), bias, increments.front());
+  for (std::size_t i = 1; i < increments.size(); ++i) products.add(increments[i]);
+  const Preintegration dense = products.result();
+  const Preintegration structured = preintegrate(increments, loud_noise(), bias);
+  // Same arithmetic in another order: rounding only. Everything is below 10 in its unit.
+  EXPECT_LT(normalized_difference(structured.covariance, dense.covariance), 1e-12);
+  const auto near = [](const auto& a, const auto& b) {
+    EXPECT_LT((a - b).cwiseAbs().maxCoeff(), 1e-12);
+  };
+  near(structured.J_dp_bg, dense.J_dp_bg);
+  near(structured.J_dp_ba, dense.J_dp_ba);
+  near(structured.J_dv_bg, dense.J_dv_bg);
+  near(structured.J_dv_ba, dense.J_dv_ba);
+  near(structured.J_dq_bg, dense.J_dq_bg);
+  near(structured.dp, dense.dp);
+  near(structured.dv, dense.dv);
+  near(structured.dq.coeffs(), dense.dq.coeffs());
 }
 
 TEST(Preintegrator, CovarianceApproachesVanLoan) {
