@@ -58,7 +58,7 @@ class RawlogStream {
   /// What ended the log before its end: one line with file, place and remedy.
   const std::optional<std::string>& damage() const { return damage_; }
   int64_t records() const { return records_; }
-  double progress() const { return file_.progress(); }
+  double progress() const { return damage_ ? 1 : file_.progress(); }
   bool compressed() const { return file_.compressed(); }
   uint64_t file_size() const { return file_.file_size(); }
   /// Top-level objects that hold no observations, by class.

@@ -1,6 +1,7 @@
 #include "foucault/core/config.h"
 
 #include <fmt/format.h>
+#include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
@@ -12,6 +13,7 @@
 #include <fstream>
 #include <iterator>
 #include <numeric>
+#include <sstream>
 #include <system_error>
 
 #include "foucault/core/error.h"
@@ -21,6 +23,15 @@ namespace {
 
 std::string joined(std::string_view prefix, std::string_view key) {
   return prefix.empty() ? std::string(key) : fmt::format("{}.{}", prefix, key);
+}
+
+/// Messages are one line, whatever the input that they quote holds.
+[[noreturn]] void refuse(std::string message) {
+  for (char& c : message) {
+    const auto code = static_cast<unsigned char>(c);
+    if (code < 0x20 || code == 0x7F) c = ' ';
+  }
+  throw UsageError(message);
 }
 
 /// Levenshtein's distance.
@@ -112,7 +123,7 @@ struct Input {
     const std::string place =
         has_lines && !mark.is_null() ? fmt::format("{}:{}", origin, mark.line + 1) : origin;
     const std::string name = key.empty() ? std::string() : fmt::format("{}: ", key);
-    throw UsageError(fmt::format("{}: {}{}", place, name, what));
+    refuse(fmt::format("{}: {}{}", place, name, what));
   }
 };
 
@@ -368,15 +379,39 @@ void read(const Input& input, const YAML::Node& root, Configurable& target) {
   reader.finish();
 }
 
+/// Takes no notice of anything.
+class NoEvents : public YAML::EventHandler {
+ public:
+  void OnDocumentStart(const YAML::Mark&) override {}
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnAlias(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnScalar(const YAML::Mark&, const std::string&, YAML::anchor_t,
+                const std::string&) override {}
+  void OnSequenceStart(const YAML::Mark&, const std::string&, YAML::anchor_t,
+                       YAML::EmitterStyle::value) override {}
+  void OnSequenceEnd() override {}
+  void OnMapStart(const YAML::Mark&, const std::string&, YAML::anchor_t,
+                  YAML::EmitterStyle::value) override {}
+  void OnMapEnd() override {}
+};
+
+/// Not with YAML::LoadAll: of "{a: b}\n, c" that makes documents until the memory is full.
+bool goes_on_after_first_document(const std::string& yaml) {
+  std::istringstream stream(yaml);
+  YAML::Parser parser(stream);
+  NoEvents events;
+  return parser.HandleNextDocument(events) && parser.HandleNextDocument(events);
+}
+
 YAML::Node parse_yaml(const std::string& yaml, const std::string& origin) {
   try {
-    const std::vector<YAML::Node> documents = YAML::LoadAll(yaml);
-    if (documents.size() > 1) {
-      throw UsageError(fmt::format("{}: holds more than one YAML document; keep one", origin));
+    if (goes_on_after_first_document(yaml)) {
+      refuse(fmt::format("{}: holds more than one YAML document; keep one", origin));
     }
-    return documents.empty() ? YAML::Node() : documents.front();
+    return YAML::Load(yaml);
   } catch (const YAML::ParserException& e) {
-    throw UsageError(fmt::format("{}:{}: is not YAML: {}", origin, e.mark.line + 1, e.msg));
+    refuse(fmt::format("{}:{}: is not YAML: {}", origin, e.mark.line + 1, e.msg));
   }
 }
 
@@ -390,7 +425,7 @@ std::string trimmed(const std::string& text) {
 /// The value of an assignment. Lists, maps and quoted texts are YAML; all else stands for itself,
 /// so that a path with a '#' or a ':' needs no second pair of quotes.
 YAML::Node assigned_value(const std::string& text, const std::string& origin) {
-  if (text.empty()) throw UsageError(fmt::format("{}: has no value after '='", origin));
+  if (text.empty()) refuse(fmt::format("{}: has no value after '='", origin));
   const bool is_yaml = std::strchr("[{\"'", text.front()) != nullptr;
   if (is_yaml) return parse_yaml(text, origin);
   YAML::Node node(text);
@@ -432,7 +467,7 @@ void set_config(const std::string& assignment, Configurable& target) {
   const std::size_t equals = assignment.find('=');
   const std::string key = trimmed(assignment.substr(0, equals));
   if (equals == std::string::npos || key.empty()) {
-    throw UsageError(fmt::format("{}: expects key=value, such as fgo.window_s=20", origin));
+    refuse(fmt::format("{}: expects key=value, such as fgo.window_s=20", origin));
   }
   const Input input{origin, false, KeyCollector::keys_of(target)};
   read(input, nested(key, assigned_value(trimmed(assignment.substr(equals + 1)), origin)), target);

@@ -375,6 +375,29 @@ TEST(Config, SetErrorsNameTheOption) {
   EXPECT_THAT(set_error("shifts_s=[1"), HasSubstr("is not YAML"));
 }
 
+/// yaml-cpp's own loader of several documents never ends with this.
+TEST(Config, SomethingBehindTheFirstDocument) {
+  for (const char* yaml : {"number: 1\n---\nnumber: 2\n", "{number: 1}\n, x\n", "[1]\n2\n"}) {
+    Everything c;
+    try {
+      load_config_text(yaml, "a.yaml", c);
+      ADD_FAILURE() << yaml;
+    } catch (const UsageError& error) {
+      EXPECT_THAT(error.what(), HasSubstr("a.yaml"));
+    }
+  }
+}
+
+TEST(Config, MessagesAreOneLineWhateverTheyQuote) {
+  Everything c;
+  try {
+    load_config_text("jobs: \"a\\nb\\x01\"\n", "a.yaml", c);
+    ADD_FAILURE();
+  } catch (const UsageError& error) {
+    EXPECT_STREQ(error.what(), "a.yaml:1: jobs: expects a whole number, got the text 'a b '");
+  }
+}
+
 TEST(Config, DumpIsReadable) {
   Everything c;
   EXPECT_EQ(dump_config(c),
