@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr size_t kGrowthPoints = 60;
+constexpr size_t kMostCurves = 120;  // in a panel
 
 Axis axis(const std::string& label, const std::string& unit, AxisKind kind = AxisKind::linear) {
   Axis result;
@@ -97,19 +98,36 @@ std::vector<double> even_times(double length) {
   return times;
 }
 
-/// All outages as one series, a gap between two.
-Series all_curves(const MethodCurves& curves, Component component, Ink ink) {
+/// All outages, or as many as can be told apart: evenly in the order of their drift, the smallest
+/// and the largest among them.
+std::vector<const OutageCurve*> shown_curves(const MethodCurves& curves, Maximum maximum) {
+  std::vector<const OutageCurve*> all;
+  for (const OutageCurve& curve : curves.outages) all.push_back(&curve);
+  if (all.size() <= kMostCurves) return all;
+  std::stable_sort(all.begin(), all.end(), [&](const OutageCurve* a, const OutageCurve* b) {
+    return a->*maximum < b->*maximum;
+  });
+  std::vector<const OutageCurve*> shown;
+  for (size_t i = 0; i < kMostCurves; ++i) {
+    shown.push_back(all[i * (all.size() - 1) / (kMostCurves - 1)]);
+  }
+  return shown;
+}
+
+/// Outages as one series, a gap between two.
+Series outage_series(const MethodCurves& curves, Component component, Maximum maximum, Ink ink) {
   Series series;
   series.label = "each outage";
   series.column = curves.method + " outages";
   series.ink = ink;
   series.size = 0.9;
   series.opacity = 0.35;
-  for (const OutageCurve& curve : curves.outages) {
-    series.x.insert(series.x.end(), curve.since_begin_s.begin(), curve.since_begin_s.end());
-    const std::vector<double>& values = curve.*component;
+  for (const OutageCurve* curve : shown_curves(curves, maximum)) {
+    const std::vector<double>& times = curve->since_begin_s;
+    const std::vector<double>& values = curve->*component;
+    series.x.insert(series.x.end(), times.begin(), times.end());
     series.y.insert(series.y.end(), values.begin(), values.end());
-    series.x.push_back(curve.since_begin_s.empty() ? 0 : curve.since_begin_s.back());
+    series.x.push_back(times.empty() ? 0 : times.back());
     series.y.push_back(kNaN);
   }
   return series;
@@ -148,7 +166,7 @@ Panel curve_panel(const MethodCurves& curves, const MethodOrder& order, Componen
   panel.y.max = top > 0 ? 1.06 * top : 1;
   panel.legend = LegendPlace::none;
   panel.note = fmt::format("{} m", significant_text(maximum_rms(curves, maximum)));
-  panel.series = {all_curves(curves, component, rms.ink), rms};
+  panel.series = {outage_series(curves, component, maximum, rms.ink), rms};
   return panel;
 }
 
@@ -170,6 +188,13 @@ Figure drift_curves(const DriftCase& drift_case, const MethodOrder& order) {
       "methods. Drift that grows evenly is normal; one line far "
       "above "
       "the rest is an outage worth a look.";
+  for (const MethodCurves& curves : drift_case.methods) {
+    if (curves.outages.size() <= kMostCurves) continue;
+    figure.caption += fmt::format(
+        " Shown are {} outages of all, evenly in the order of their drift; the RMS is of all.",
+        kMostCurves);
+    break;
+  }
   figure.height_mm = 165;
   figure.share_x = true;
   figure.columns = std::max(1, static_cast<int>(drift_case.methods.size()));

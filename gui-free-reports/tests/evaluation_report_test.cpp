@@ -157,6 +157,32 @@ TEST(EvaluationFigures, CurvesHaveAColumnAMethodAndARowAComponent) {
   EXPECT_EQ(rms.x.back(), 60);
 }
 
+TEST(EvaluationFigures, OfVeryManyOutagesCurvesAreASelection) {
+  DriftCase many = made_up_case("a day", 1e-3);
+  for (MethodCurves& curves : many.methods) {
+    const std::vector<OutageCurve> twenty = curves.outages;
+    for (int i = 0; i < 49; ++i) {
+      curves.outages.insert(curves.outages.end(), twenty.begin(), twenty.end());
+    }
+  }
+  const Figure few = drift_curves(made_up_case("a day", 1e-3), kMethods);
+  const Figure figure = drift_curves(many, kMethods);
+  for (size_t p = 0; p < figure.panels.size(); ++p) {
+    const std::vector<double>& all = few.panels[p].series[0].y;
+    const std::vector<double>& shown = figure.panels[p].series[0].y;
+    EXPECT_EQ(shown.size(), 120 * 62u);  // 61 samples and a gap each
+    const auto less = [](double a, double b) { return std::isnan(a) ? !std::isnan(b) : a < b; };
+    EXPECT_EQ(*std::max_element(shown.begin(), shown.end(), less),
+              *std::max_element(all.begin(), all.end(), less));
+    const std::vector<double>& rms = figure.panels[p].series[1].y;  // of all
+    ASSERT_EQ(rms.size(), few.panels[p].series[1].y.size());
+    for (size_t i = 0; i < rms.size(); ++i) {
+      EXPECT_NEAR(rms[i], few.panels[p].series[1].y[i], 1e-9 * rms[i]);  // summed in another order
+    }
+  }
+  EXPECT_NE(figure.caption, few.caption);
+}
+
 TEST(EvaluationFigures, GrowthHasTheSlopeOfTheDrift) {
   const Figure figure = drift_growth(made_up_case("X", 1), kMethods);
   const Series& series = figure.panels[0].series[0];
