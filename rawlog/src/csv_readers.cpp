@@ -90,6 +90,26 @@ int64_t parse_date(const std::string& date, const std::string& section) {
   return static_cast<int64_t>(timegm(&utc)) * kNanosecondsPerSecond;
 }
 
+/// Texts of one line, as messages quote them.
+void check_line(const std::string& text, const std::string& key) {
+  const auto is_control = [](unsigned char c) { return c < 0x20 || c == 0x7F; };
+  if (std::none_of(text.begin(), text.end(), is_control)) return;
+  throw UsageError(fmt::format("{} has a control character in it; remove it", key));
+}
+
+void check_lines(const std::map<std::string, std::string>& texts, const std::string& key) {
+  for (const auto& [name, text] : texts) {
+    check_line(name, key);
+    check_line(text, key);
+  }
+}
+
+void check_lines(const TableMapping& mapping, const std::string& section) {
+  check_lines(mapping.columns, section + ".columns");
+  check_line(mapping.time.date, section + ".time.date");
+  check_line(mapping.file, section + ".file");
+}
+
 template <class Value>
 Value needed(const std::optional<Value>& value, const std::string& section, const char* key,
              const std::string& system) {
@@ -526,6 +546,11 @@ int64_t TimeColumn::stamp(const Row& row) const {
 ImportMapping load_mapping(const MappingSource& source) {
   ImportMapping mapping;
   load_config(source.mapping, mapping);
+  check_lines(mapping.imu, "imu");
+  check_lines(mapping.gnss, "gnss");
+  check_lines(mapping.reference, "reference");
+  check_lines(mapping.gnss.quality_table, "gnss.quality_table");
+  for (const std::string& axis : mapping.imu.axes) check_line(axis, "imu.axes");
   return mapping;
 }
 
