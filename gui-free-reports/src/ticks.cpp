@@ -6,19 +6,13 @@
 #include <array>
 #include <cmath>
 
+#include "foucault/core/round_step.h"
+
 namespace foucault::reports {
 namespace {
 
 constexpr double kSecondsPerMinute = 60;
 constexpr double kSecondsPerHour = 3600;
-
-double round_step(double least) {
-  const double power = std::pow(10, std::floor(std::log10(least)));
-  for (const double factor : {1.0, 2.0, 5.0}) {
-    if (factor * power >= least * (1 - 1e-9)) return factor * power;
-  }
-  return 10 * power;
-}
 
 int decimals_of(double step) {
   return std::max(0, static_cast<int>(-std::floor(std::log10(step) + 1e-9)));

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "foucault/core/round_step.h"
+
 namespace foucault {
 namespace {
 
@@ -12,15 +14,6 @@ constexpr std::size_t kFewestInBin = 4;
 constexpr double kUsualInBin = 6;
 constexpr double kFewestBins = 2;
 constexpr double kMostBins = 8;
-
-/// The least of 1, 2, 5 times a power of ten that is not below `value`.
-double round_step(double value) {
-  const double decade = std::pow(10, std::floor(std::log10(value)));
-  for (const double factor : {1.0, 2.0, 5.0}) {
-    if (factor * decade >= value * (1 - 1e-9)) return factor * decade;
-  }
-  return 10 * decade;
-}
 
 std::size_t count_finite(const std::vector<double>& values) {
   return static_cast<std::size_t>(

@@ -49,8 +49,9 @@ BatchSolution solve(BatchChain& chain, const FgoOptions& options, Preintegration
                     const ImuNoise& noise);
 
 /// Runs another navigator forward and leaves the chain of its way.
-/// A node stands at every fix, hold and mark, and the ends of a run; about 6 kB each. Increments
-/// are kept only while the bias is so uncertain that the interval may have to be integrated again.
+/// A node stands at every fix, hold and mark, and the ends of a run; about 6 kB each while it
+/// runs, 55 kB while it is solved. Increments are kept only while the bias is so uncertain that the
+/// interval may have to be integrated again.
 class BatchRecorder final : public Navigator, public Recording {
  public:
   BatchRecorder(std::unique_ptr<Navigator> forward, const FgoOptions& options,
