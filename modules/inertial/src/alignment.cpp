@@ -124,6 +124,7 @@ class Aligner::Impl {
   void finish_rest_with_given_heading();
   void start_at_rest(const HeadingOffset& heading, double drift_variance);
   void accept(const Epoch& epoch, const std::string& how);
+  void require_upright(const Epoch& epoch) const;
 
   AlignmentOptions options_;
   ImuNoise noise_;
@@ -273,8 +274,28 @@ void Aligner::Impl::start_at_rest(const HeadingOffset& heading, double drift_var
 }
 
 void Aligner::Impl::accept(const Epoch& epoch, const std::string& how) {
+  require_upright(epoch);
   initial_ = epoch;
   summary_ = fmt::format("aligned {}: {}", how, describe(epoch, q_v_b_));
+}
+
+/// A course is a heading only while the forward axis is about level; axes named wrongly are seen in
+/// that.
+void Aligner::Impl::require_upright(const Epoch& epoch) const {
+  constexpr double kSteepest = 60 * kDegree;
+  if (all_given() || given_.roll || given_.pitch) return;
+  const Vector3d up_v = (epoch.q_n_b * q_v_b_.conjugate()).conjugate() * -Vector3d::UnitZ();
+  if (-up_v.z() > std::cos(kSteepest)) return;
+  Eigen::Index axis = 0;
+  up_v.cwiseAbs().maxCoeff(&axis);
+  const bool plus = up_v[axis] > 0;
+  const char* const names[] = {plus ? "forward" : "backward", plus ? "right" : "left",
+                               plus ? "down" : "up"};
+  throw DataError(
+      fmt::format("gravity points the wrong way: the IMU's axes say that up is the vehicle's {} "
+                  "axis; correct the axes of the import, or give alignment.roll_deg and pitch_deg "
+                  "if the vehicle does stand so",
+                  names[axis]));
 }
 
 int64_t Aligner::Impl::earliest_start_ns() const {

@@ -7,12 +7,18 @@
 #include <cmath>
 #include <utility>
 
+#include "fix_judge.h"
+#include "fix_screen.h"
 #include "foucault/core/error.h"
 #include "foucault/core/profile.h"
 #include "foucault/core/time.h"
 #include "foucault/geodesy/local_frame.h"
 #include "foucault/inertial/increments.h"
+#include "imu_guard.h"
 #include "imu_hole.h"
+#include "known_biases.h"
+#include "plausibility.h"
+#include "time_mismatch.h"
 
 namespace foucault {
 
@@ -22,11 +28,8 @@ constexpr double kRecentRatesMemory = 0.3;     // [s]: beyond vibration, well wi
 constexpr double kHoleThatMayHideATurn = 0.5;  // [s]
 constexpr double kLongestWait = 3;             // [s], for fixes after a hole
 constexpr double kNoticeableGap = 0.2;         // [s]: a few lost samples are not worth a line
-/// After a hole the attitude may be off by tens of degrees, beyond what is linear: sigmas are then
-/// too small for a while, and every fix is needed.
-constexpr int64_t kGateOpenNs = 10 * kNanosecondsPerSecond;
-constexpr double kLevelMemory = 30;   // fixes
-constexpr double kLargestShare = 10;  // of one fix, times the level
+/// Fixes further from the IMU in time are of another recording, or of another clock.
+constexpr int64_t kElsewhenNs = 3600 * kNanosecondsPerSecond;
 constexpr double kPi = 3.14159265358979323846;
 
 std::string text(int64_t t_ns) { return fmt::format("{:.3f} s", to_seconds(t_ns)); }
@@ -61,16 +64,6 @@ bool covariance_is_valid(const Eigen::Matrix3d& covariance) {
   if (!covariance.allFinite() || covariance.diagonal().minCoeff() <= 0) return false;
   const Eigen::LLT<Eigen::Matrix3d> llt(covariance);
   return llt.info() == Eigen::Success;
-}
-
-/// Survival function of the chi-square distribution with 3 degrees of freedom.
-double chi_square_3_tail(double x) {
-  return std::erfc(std::sqrt(x / 2)) + std::sqrt(2 * x / kPi) * std::exp(-x / 2);
-}
-
-double normalized_square(const Innovation& innovation) {
-  const Eigen::LLT<Eigen::Matrix3d> llt(innovation.covariance);
-  return innovation.value_n.dot(llt.solve(innovation.value_n));
 }
 
 /// A minus B [m], in the NED of B.
@@ -112,10 +105,23 @@ NavigationRun::NavigationRun(std::unique_ptr<Navigator> navigator, Aligner align
     : navigator_(std::move(navigator)),
       aligner_(std::move(aligner)),
       options_(options),
-      sink_(sink) {}
+      sink_(sink),
+      guard_(std::make_unique<ImuGuard>()),
+      plausibility_(std::make_unique<Plausibility>()),
+      screen_(std::make_unique<FixScreen>()),
+      judge_(std::make_unique<FixJudge>(options.gnss)) {}
 
 void NavigationRun::process(const Measurement& measurement) {
-  count(measurement);
+  if (const auto* increment = std::get_if<ImuIncrement>(&measurement)) {
+    process_increment(*increment);
+  } else if (const auto* fix = std::get_if<GnssFix>(&measurement)) {
+    process_fix(*fix);
+  } else {
+    pass_on(measurement);
+  }
+}
+
+void NavigationRun::pass_on(const Measurement& measurement) {
   if (aligned_) {
     take(measurement);
   } else {
@@ -123,23 +129,54 @@ void NavigationRun::process(const Measurement& measurement) {
   }
 }
 
-void NavigationRun::count(const Measurement& measurement) {
-  if (const auto* increment = std::get_if<ImuIncrement>(&measurement)) {
-    check_order(*increment);
-    ++counts_.increments;
-    last_increment_end_ns_ = increment->t_end_ns;
-  } else if (const auto* fix = std::get_if<GnssFix>(&measurement)) {
-    count_fix(*fix);
+void NavigationRun::process_increment(const ImuIncrement& increment) {
+  const ImuGuard::Verdict verdict = guard_->look_at(increment);
+  if (!verdict.notice.empty()) {
+    sink_.notice({increment.t_end_ns, NoticeKind::skipped, verdict.notice});
   }
+  if (!verdict.increment) return;
+  ++counts_.increments;
+  ImuIncrement usable = *verdict.increment;
+  if (verdict.accel_repeats) {
+    constexpr double kRepeatLasts = 3;  // [s] that the error stays the same
+    usable.extra_accel_noise_density = options_.gaps.accel_sigma_m_s2 * std::sqrt(kRepeatLasts);
+    judge_->doubt_state(usable.t_end_ns);
+  }
+  plausibility_->add(usable);
+  pass_on(usable);
 }
 
-void NavigationRun::check_order(const ImuIncrement& increment) const {
-  const int64_t before_ns = last_increment_end_ns_.value_or(increment.t_begin_ns);
-  if (increment.t_begin_ns >= before_ns && increment.t_end_ns > increment.t_begin_ns) return;
-  throw DataError(
-      fmt::format("IMU increment from {} to {} overlaps what came before (up to {}); sort the IMU "
-                  "data by time and remove duplicates",
-                  text(increment.t_begin_ns), text(increment.t_end_ns), text(before_ns)));
+void NavigationRun::process_fix(const GnssFix& fix) {
+  count_fix(fix);
+  const std::optional<int64_t> imu_ns = guard_->last_end_ns();
+  if (imu_ns && std::abs(fix.t_ns - *imu_ns) > kElsewhenNs) {
+    ++counts_.elsewhen;
+    if (!counts_.first_elsewhen_s) counts_.first_elsewhen_s = seconds_between(*imu_ns, fix.t_ns);
+    return;
+  }
+  if (is_repeated(fix)) {
+    ++counts_.repeated;
+    if (aligned_) leave_out(fix, FixVerdict::out_of_order);
+    return;
+  }
+  last_fix_seen_ = fix;
+  plausibility_->add(fix);
+  pass_on(fix);
+}
+
+bool NavigationRun::is_repeated(const GnssFix& fix) const {
+  if (!last_fix_seen_ || last_fix_seen_->t_ns != fix.t_ns) return false;
+  const Geodetic &a = fix.antenna, &b = last_fix_seen_->antenna;
+  return a.latitude == b.latitude && a.longitude == b.longitude && a.height == b.height;
+}
+
+void NavigationRun::leave_out(const GnssFix& fix, FixVerdict verdict) {
+  FixResult result;
+  result.t_ns = fix.t_ns;
+  result.verdict = verdict;
+  result.quality = fix.quality;
+  result.antenna = fix.antenna;
+  sink_.fix(result);
 }
 
 void NavigationRun::count_fix(const GnssFix& fix) {
@@ -158,25 +195,42 @@ void NavigationRun::count_fix(const GnssFix& fix) {
 
 // Alignment -------------------------------------------------------------------------------------
 
+bool NavigationRun::may_align(const GnssFix& fix) const {
+  return position_is_valid(fix.antenna) &&
+         covariance_is_valid(weighted(fix, options_.gnss).position_covariance) &&
+         fix.quality >= quality_from(options_.gnss.min_quality);
+}
+
+/// Fixes that cannot align, or need not be looked at, pass the screen unseen.
 void NavigationRun::align(const Measurement& measurement) {
+  if (options_.gnss.gate_false_alarm == 0) {
+    align_screened(measurement, true);
+    return;
+  }
+  screen_->add(measurement);
+  while (!aligned_) {
+    const std::optional<FixScreen::Screened> screened = screen_->next();
+    if (!screened) return;
+    align_screened(screened->measurement, screened->plausible);
+  }
+}
+
+void NavigationRun::align_screened(const Measurement& measurement, bool plausible) {
   held_.push_back(measurement);
-  show_aligner(measurement);
+  show_aligner(measurement, plausible);
   if (aligner_.initial()) {
+    for (const Measurement& waiting : screen_->take_all()) held_.push_back(waiting);
     start(*aligner_.initial());
   } else {
     drop_what_no_start_needs();
   }
 }
 
-void NavigationRun::show_aligner(const Measurement& measurement) {
+void NavigationRun::show_aligner(const Measurement& measurement, bool plausible) {
   const StageTimer timer(Stage::align);
   if (const auto* increment = std::get_if<ImuIncrement>(&measurement)) aligner_.add(*increment);
   if (const auto* fix = std::get_if<GnssFix>(&measurement)) {
-    const GnssFix trusted = weighted(*fix, options_.gnss);
-    const bool usable = position_is_valid(fix->antenna) &&
-                        covariance_is_valid(trusted.position_covariance) &&
-                        fix->quality >= quality_from(options_.gnss.min_quality);
-    if (usable) aligner_.add(trusted);
+    if (plausible && may_align(*fix)) aligner_.add(weighted(*fix, options_.gnss));
   }
 }
 
@@ -185,16 +239,15 @@ void NavigationRun::drop_what_no_start_needs() {
   while (!held_.empty() && stamp(held_.front()) < earliest_ns) held_.pop_front();
 }
 
-void NavigationRun::start(const Epoch& initial) {
+void NavigationRun::start(const Epoch& aligned) {
+  const Epoch initial = before_hole_ ? with_known_biases(aligned, *before_hole_) : aligned;
   const NoticeKind kind = started_before_ ? NoticeKind::realigned : NoticeKind::aligned;
   sink_.notice({initial.t_ns, kind, aligner_.summary()});
   aligned_ = true;
   started_before_ = true;
   time_ns_ = initial.t_ns;
   last_node_ns_ = initial.t_ns;
-  gated_in_a_row_ = 0;
-  innovation_level_ = 1;
-  last_quality_ = FixQuality::fixed_rtk;
+  judge_->start(initial.t_ns);
   navigator_->start(initial);
   emit_epoch();
 
@@ -207,16 +260,18 @@ void NavigationRun::start(const Epoch& initial) {
 
 void NavigationRun::realign(const ImuIncrement& next) {
   sink_.notice({next.t_begin_ns, NoticeKind::imu_gap,
-                fmt::format("no IMU data for {:.1f} s from {}; aligning anew",
+                fmt::format("no IMU data for {:.1f} s from {}; aligning anew, biases are kept",
                             seconds_between(time_ns_, next.t_begin_ns), text(time_ns_))});
   aligned_ = false;
-  std::deque<Event> pending;
+  before_hole_ = navigator_->epoch();
+  std::multimap<int64_t, Event> pending;
   pending.swap(pending_);
   recent_ = RecentRates();
   last_fix_ns_.reset();
   fix_interval_ns_ = 0;
   aligner_.restart();
-  for (const Event& event : pending) {
+  screen_->restart();
+  for (const auto& [t_ns, event] : pending) {
     const Measurement measurement = std::visit([](const auto& e) { return Measurement(e); }, event);
     if (stamp(measurement) >= next.t_begin_ns) take(measurement);
   }
@@ -243,17 +298,12 @@ void NavigationRun::take_event(const Event& event) {
   const auto stamp_of = [](const Event& e) {
     return std::visit([](const auto& m) { return m.t_ns; }, e);
   };
-  const int64_t latest_ns = pending_.empty() ? time_ns_ : stamp_of(pending_.back());
-  if (stamp_of(event) >= latest_ns) {
-    pending_.push_back(event);
+  if (stamp_of(event) >= time_ns_) {
+    pending_.emplace(stamp_of(event), event);
     if (stamp_of(event) == time_ns_) handle_stop();
   } else if (const auto* fix = std::get_if<GnssFix>(&event)) {
-    FixResult result;
-    result.t_ns = fix->t_ns;
-    result.verdict = FixVerdict::out_of_order;
-    result.quality = fix->quality;
-    result.antenna = fix->antenna;
-    sink_.fix(result);
+    ++counts_.late;
+    leave_out(*fix, FixVerdict::out_of_order);
   }
 }
 
@@ -315,7 +365,7 @@ void NavigationRun::leave_hole() {
   std::deque<Measurement> beyond;
   beyond.swap(beyond_hole_);
   const bool noticeable = hole->length() >= kNoticeableGap;
-  if (noticeable) gate_open_until_ns_ = hole->after.t_begin_ns + kGateOpenNs;
+  if (noticeable) judge_->doubt_state(hole->after.t_begin_ns);
   // Fixes in the hole came before its end was known; those after it wait their turn.
   const int64_t step_ns = hole->after.t_end_ns - hole->after.t_begin_ns;
   while (time_ns_ < hole->after.t_begin_ns) {
@@ -364,10 +414,7 @@ void NavigationRun::propagate(const ImuIncrement& increment) {
 /// The next stamp up to end_ns at which to stop, later than now.
 std::optional<int64_t> NavigationRun::next_stop(int64_t end_ns) const {
   int64_t stop_ns = std::max(hold_due_ns(), time_ns_ + 1);
-  if (!pending_.empty()) {
-    stop_ns = std::min(stop_ns,
-                       std::visit([](const auto& event) { return event.t_ns; }, pending_.front()));
-  }
+  if (!pending_.empty()) stop_ns = std::min(stop_ns, pending_.begin()->first);
   if (stop_ns > end_ns) return std::nullopt;
   return stop_ns;
 }
@@ -386,12 +433,9 @@ int64_t NavigationRun::hold_due_ns() const {
 
 /// Everything due now: fixes first, then a hold if still needed, then one epoch.
 void NavigationRun::handle_stop() {
-  const auto is_now = [this](const Event& event) {
-    return std::visit([this](const auto& e) { return e.t_ns <= time_ns_; }, event);
-  };
-  while (!pending_.empty() && is_now(pending_.front())) {
-    const Event event = pending_.front();
-    pending_.pop_front();
+  while (!pending_.empty() && pending_.begin()->first <= time_ns_) {
+    const Event event = pending_.begin()->second;
+    pending_.erase(pending_.begin());
     if (const auto* fix = std::get_if<GnssFix>(&event)) handle_fix(*fix);
   }
   if (time_ns_ >= hold_due_ns()) hold();
@@ -436,30 +480,32 @@ void NavigationRun::handle_fix(const GnssFix& fix) {
 
 FixVerdict NavigationRun::judge(const GnssFix& fix, const Innovation& innovation) {
   if (fix.quality < quality_from(options_.gnss.min_quality)) return FixVerdict::low_quality;
-  // Worse fixes before may have pulled the state away, with sigmas that promised too much.
-  if (fix.quality > last_quality_) gate_open_until_ns_ = fix.t_ns + kGateOpenNs;
-  if (passes_gate(normalized_square(innovation)) || fix.t_ns <= gate_open_until_ns_) {
-    gated_in_a_row_ = 0;
-    return FixVerdict::used;
+  using Action = FixJudge::Action;
+  const FixJudge::Decision decision = judge_->judge(fix, innovation, *navigator_);
+  if (!decision.notice.empty()) {
+    sink_.notice({fix.t_ns, NoticeKind::fix_rejected, decision.notice});
   }
-  if (++gated_in_a_row_ <= options_.gnss.reinstate_after) return FixVerdict::gated;
-  gate_open_until_ns_ = fix.t_ns + kGateOpenNs;
+  switch (decision.action) {
+    case Action::leave_out:
+      return FixVerdict::gated;
+    case Action::use_corrected:
+      navigator_->update(decision.fix);
+      remember_fix_time();
+      return FixVerdict::gated;
+    case Action::move_state:
+      navigator_->start(moved_to_fix(navigator_->epoch(), fix, innovation));
+      break;
+    case Action::restart_state:
+      navigator_->start(restarted_at_fix(navigator_->epoch(), fix, innovation, decision.line));
+      break;
+    case Action::use:
+      break;
+  }
   return FixVerdict::used;
-}
-
-/// Chi-square test against the level that innovations have had of late: where sigmas are too small
-/// throughout, an outlier is what stands out of the others. One fix raises the level by a third at
-/// most.
-bool NavigationRun::passes_gate(double square) {
-  const double level = std::max(1.0, innovation_level_);
-  const double mean_square = std::min(square / 3, kLargestShare * level);
-  innovation_level_ += (mean_square - innovation_level_) / kLevelMemory;
-  return chi_square_3_tail(square / level) >= options_.gnss.gate_false_alarm;
 }
 
 void NavigationRun::use(const GnssFix& fix, FixResult& result) {
   navigator_->update(fix);
-  last_quality_ = fix.quality;
   remember_fix_time();
   const Epoch epoch = navigator_->epoch();
   result.postfit_n = difference_n(fix.antenna, antenna_of(epoch, fix.p_b_a));
@@ -482,12 +528,40 @@ void NavigationRun::notice_first_rejection(const GnssFix& fix, FixVerdict verdic
 // The end ---------------------------------------------------------------------------------------
 
 void NavigationRun::finish() {
+  while (!aligned_) {
+    const std::optional<FixScreen::Screened> screened = screen_->next(true);
+    if (!screened) break;
+    align_screened(screened->measurement, screened->plausible);
+  }
   while (hole_) leave_hole();
   throw_if_nothing_usable();
   if (!started_before_) throw DataError(aligner_.why_not());
+  notice_left_out();
+}
+
+void NavigationRun::notice_left_out() {
+  std::vector<std::string> lines = guard_->summary();
+  if (counts_.repeated > 0) {
+    lines.push_back(
+        fmt::format("{} fixes repeat the one before them and were left out", counts_.repeated));
+  }
+  if (counts_.late > 0) {
+    lines.push_back(fmt::format(
+        "{} fixes came after later ones and were left out; sort the log by time", counts_.late));
+  }
+  if (counts_.elsewhen > 0) {
+    lines.push_back(fmt::format("{} fixes were left out, the first stamped {}", counts_.elsewhen,
+                                describe_mismatch(*counts_.first_elsewhen_s)));
+  }
+  for (const std::string& line : lines) sink_.notice({time_ns_, NoticeKind::skipped, line});
 }
 
 void NavigationRun::throw_if_nothing_usable() const {
+  if (2 * guard_->left_out() > guard_->seen()) {
+    std::string why;
+    for (const std::string& line : guard_->summary()) why += (why.empty() ? "" : "; ") + line;
+    throw DataError(fmt::format("{}; sort the IMU data by time and remove what is damaged", why));
+  }
   if (counts_.increments == 0) {
     throw DataError(
         "no IMU data in the log; import a recording with angular rates and specific force");
@@ -496,6 +570,10 @@ void NavigationRun::throw_if_nothing_usable() const {
     throw DataError("no GNSS fix in the log; import a recording with positions");
   }
   if (counts_.usable() > 0) return;
+  if (2 * counts_.elsewhen > counts_.fixes) {
+    throw DataError(fmt::format("GNSS and IMU do not overlap in time: the fixes are stamped {}",
+                                describe_mismatch(*counts_.first_elsewhen_s)));
+  }
   throw DataError(fmt::format(
       "none of the {} GNSS fixes can be used: {} with a sigma that is zero, negative or not "
       "finite, "

@@ -318,17 +318,59 @@ TEST_F(NavigationRunTest, AlignsAnewAfterALongHole) {
   EXPECT_THAT(kinds, ElementsAre(NoticeKind::aligned, NoticeKind::imu_gap, NoticeKind::realigned));
 }
 
-TEST_F(NavigationRunTest, OverlappingAndEmptyIncrementsAreErrors) {
+TEST_F(NavigationRunTest, IncrementsOutOfOrderOrNotFiniteAreLeftOutAndNamed) {
   align();
   feed_imu(10, 30);
-  EXPECT_THROW(run().process(increment_between(20, 40)), DataError);
-  EXPECT_THROW(run().process(increment_between(40, 40)), DataError);
-  try {
-    run().process(increment_between(25, 35));
-    FAIL() << "accepted";
-  } catch (const DataError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("1700000000.025"));
+  run().process(increment_between(10, 20));  // comes again
+  run().process(increment_between(30, 30));  // has no length
+  ImuIncrement nan = increment_between(30, 40);
+  nan.dvel_b.y() = std::numeric_limits<double>::quiet_NaN();
+  run().process(nan);
+  feed_imu(40, 60);
+  run().process(increment_between(55, 70));  // begins too early
+  run().finish();
+  int64_t end_ns = at(10);
+  for (const ImuIncrement& increment : log_.propagated) {
+    EXPECT_EQ(increment.t_begin_ns, end_ns);
+    EXPECT_TRUE(increment.dvel_b.allFinite());
+    end_ns = increment.t_end_ns;
   }
+  EXPECT_EQ(ms_of(end_ns), 70);
+  std::string notices;
+  for (const Notice& notice : sink_.notices) notices += notice.text + "\n";
+  EXPECT_THAT(notices, HasSubstr("1 IMU samples are not finite"));
+  EXPECT_THAT(notices, HasSubstr("1700000000.040"));
+  EXPECT_THAT(notices, HasSubstr("2 IMU samples do not come after"));
+  EXPECT_THAT(notices, HasSubstr("1700000000.020"));
+}
+
+TEST_F(NavigationRunTest, EndsIfMostOfTheImuIsUnusable) {
+  align();
+  feed_imu(10, 30);
+  for (int i = 0; i < 5; ++i) run().process(increment_between(10, 20));
+  EXPECT_THAT(error_of_finish(), HasSubstr("5 IMU samples do not come after"));
+}
+
+TEST_F(NavigationRunTest, AFixOfAnotherWeekDoesNotKeepOthersWaiting) {
+  align();
+  run().process(fix_at(20));
+  run().process(fix_at(20 + 1000.0 * 604800));
+  run().process(fix_at(20 + 1000.0 * 1800));  // half an hour ahead
+  run().process(fix_at(30));
+  feed_imu(10, 50);
+  run().finish();
+  EXPECT_EQ(log_.updates.size(), 2u);
+  EXPECT_THAT(sink_.notices.back().text, HasSubstr("another GPS week"));
+}
+
+TEST_F(NavigationRunTest, AFixThatComesTwiceIsUsedOnce) {
+  align();
+  run().process(fix_at(20));
+  run().process(fix_at(20));
+  feed_imu(10, 50);
+  EXPECT_EQ(log_.updates.size(), 1u);
+  ASSERT_EQ(sink_.fixes.size(), 2u);
+  EXPECT_EQ(sink_.fixes.front().verdict, FixVerdict::out_of_order);
 }
 
 TEST_F(NavigationRunTest, OutlierIsGatedAndReported) {

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -21,7 +22,7 @@ class GnssOptions : public Configurable {
   double sigma_scale = 1;           ///< multiplies the sigmas of positions
   double sigma_floor_m = 0;         ///< smallest sigma of a position, each axis
   double gate_false_alarm = 1e-7;   ///< probability that a good fix is gated; 0: no gate
-  int64_t reinstate_after = 3;      ///< gated fixes in a row after which the gate opens
+  int64_t reinstate_after = 3;      ///< gated fixes in a row after which the state may be wrong
 
   void fields(ConfigFields& f) override;
 };
@@ -38,6 +39,10 @@ class GapOptions : public Configurable {
   void fields(ConfigFields& f) override;
 };
 
+class FixJudge;
+class FixScreen;
+class ImuGuard;
+class Plausibility;
 struct ImuHole;
 
 enum class EpochRate { epochs, imu };
@@ -58,14 +63,23 @@ struct NavigationRunOptions {
 ///   fixes after the hole tell how the vehicle turned in it, at most 3 s later; beyond max_gap_s
 ///   the run aligns again.
 /// - Fixes are gated by the chi-square test of their innovation (3 degrees of freedom), relative to
-///   the mean of recent ones where that is above its expectation. The gate opens for ten seconds
-///   after reinstate_after gated ones in a row (it is the state that is wrong), after a hole, and
-///   from a fix better in quality than the last used.
+///   the median of recent ones where that is above its expectation. If those that do not pass go
+///   on, it is found out whether they or the state are wrong, see src/fix_judge.h; neither a run of
+///   bad fixes nor a wrong state locks the other out for more than 90 s. After a hole, and from a
+///   fix better in quality than the last used, the gate is open for ten seconds.
+/// - Before the alignment, fixes that no vehicle can reach from their neighbours are left out.
+/// - Fixes that repeat the one before them, come late, or are stamped more than an hour from the
+///   IMU are left out (out_of_order).
+/// - Increments that are not finite, or do not come after the one before, are left out, counted and
+///   named; samples of a clipped or stuck gyroscope are a hole, those of such an
+///   accelerometer get more noise.
 /// - Fixes up to the alignment's start stamp are not used again and have no FixResult.
+/// - After a new alignment the biases known before it still count, with doubled sigmas.
+/// process() throws DataError for what makes a recording useless: units of the IMU, turned axes,
+/// clocks that are seconds apart.
 /// Memory is bounded: before alignment, at most what the Aligner may still start from is held.
-/// process() throws DataError for increments that overlap, go back or have no length.
-/// finish() throws DataError if there was no IMU, no usable fix, or no alignment: why, and what to
-/// do about it.
+/// finish() throws DataError if there was no IMU, no usable fix, or no alignment, or if more than
+/// half of the increments had to be left out: why, and what to do about it.
 class NavigationRun : public Estimator {
  public:
   NavigationRun(std::unique_ptr<Navigator> navigator, Aligner aligner,
@@ -92,16 +106,28 @@ class NavigationRun : public Estimator {
     int64_t bad_sigma = 0;
     int64_t bad_position = 0;
     int64_t low_quality = 0;
+    int64_t repeated = 0;
+    int64_t late = 0;
+    int64_t elsewhen = 0;                    ///< stamped far from the IMU
+    std::optional<double> first_elsewhen_s;  ///< by how much
     std::optional<int64_t> first_bad_ns;
-    int64_t usable() const { return fixes - bad_sigma - bad_position - low_quality; }
+    int64_t usable() const {
+      return fixes - bad_sigma - bad_position - low_quality - repeated - elsewhen;
+    }
   };
 
   void count(const Measurement& measurement);
-  void check_order(const ImuIncrement& increment) const;
   void count_fix(const GnssFix& fix);
+  void process_increment(const ImuIncrement& increment);
+  void process_fix(const GnssFix& fix);
+  void pass_on(const Measurement& measurement);
+  bool is_repeated(const GnssFix& fix) const;
+  void leave_out(const GnssFix& fix, FixVerdict verdict);
+  bool may_align(const GnssFix& fix) const;
   void align(const Measurement& measurement);
-  void show_aligner(const Measurement& measurement);
-  void start(const Epoch& initial);
+  void align_screened(const Measurement& measurement, bool plausible);
+  void show_aligner(const Measurement& measurement, bool plausible);
+  void start(const Epoch& aligned);
   void drop_what_no_start_needs();
 
   void take(const Measurement& measurement);
@@ -120,13 +146,13 @@ class NavigationRun : public Estimator {
   void handle_stop();
   void handle_fix(const GnssFix& fix);
   FixVerdict judge(const GnssFix& fix, const Innovation& innovation);
-  bool passes_gate(double square);
   void use(const GnssFix& fix, FixResult& result);
   void remember_fix_time();
   void hold();
   void emit_epoch();
   void notice_first_rejection(const GnssFix& fix, FixVerdict verdict);
 
+  void notice_left_out();
   void throw_if_nothing_usable() const;
 
   std::unique_ptr<Navigator> navigator_;
@@ -141,17 +167,17 @@ class NavigationRun : public Estimator {
   std::optional<int64_t> last_epoch_ns_;
   std::optional<int64_t> last_fix_ns_;
   int64_t fix_interval_ns_ = 0;
-  std::optional<int64_t> last_increment_end_ns_;
+  std::unique_ptr<ImuGuard> guard_;
+  std::unique_ptr<Plausibility> plausibility_;
+  std::unique_ptr<FixScreen> screen_;
+  std::unique_ptr<FixJudge> judge_;
+  std::optional<GnssFix> last_fix_seen_;
+  std::optional<Epoch> before_hole_;  ///< the last state, while aligning anew
   RecentRates recent_;
   std::deque<Measurement> held_;
-  std::deque<Event> pending_;
-  std::unique_ptr<ImuHole> hole_;        ///< met but not yet bridged
-  std::deque<Measurement> beyond_hole_;  ///< what came after it, from the increment that ends it
-  int64_t gated_in_a_row_ = 0;
-  int64_t gate_open_until_ns_ = 0;
-  double innovation_level_ =
-      1;  ///< recent mean of normalized innovations squared, 1 if all is well
-  FixQuality last_quality_ = FixQuality::fixed_rtk;  ///< of the last fix used
+  std::multimap<int64_t, Event> pending_;  ///< by stamp
+  std::unique_ptr<ImuHole> hole_;          ///< met but not yet bridged
+  std::deque<Measurement> beyond_hole_;    ///< what came after it, from the increment that ends it
   bool noticed_bad_ = false;
   Counts counts_;
 };

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <deque>
+#include <optional>
+
+#include "foucault/core/measurement.h"
+
+namespace foucault {
+
+/// Tells, before there is a state to predict fixes from, which of them no vehicle reaches from
+/// their neighbours: those off a straight line between them by more than kAcceleration explains.
+/// Holds measurements back until the next fix, at most kLongestWait. The first fix passes; if it is
+/// an outlier, some seconds of good ones go with it.
+class FixScreen {
+ public:
+  struct Screened {
+    Measurement measurement;
+    bool plausible = true;
+  };
+
+  void add(const Measurement& measurement) { waiting_.push_back(measurement); }
+
+  /// The next one on which there is nothing more to wait for; with `all`, the next one.
+  std::optional<Screened> next(bool all = false);
+
+  /// What still waits, in order; it is empty afterwards.
+  std::deque<Measurement> take_all();
+
+  void restart();
+
+ private:
+  std::optional<GnssFix> second_fix() const;
+
+  std::deque<Measurement> waiting_;
+  std::optional<GnssFix> before_;  ///< the last plausible one
+};
+
+}  // namespace foucault
