@@ -160,7 +160,7 @@ TEST_F(BadInput, ASampleHereAndThereThatIsNotUsable) {
                  }));
   const Outcome run = foucault({"run", bad_, "--no-report", "--out", folder_ / "out"});
   EXPECT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_THAT(run.err, AllOf(HasSubstr("1 x CObservationIMU (stamp goes back)"),
+  EXPECT_THAT(run.err, AllOf(HasSubstr("1 x CObservationIMU (stamp comes twice)"),
                              HasSubstr("1 x CObservationIMU (not finite)")));
   EXPECT_THAT(foucault({"info", bad_}).out, HasSubstr("1 IMU samples are not finite"));
 }

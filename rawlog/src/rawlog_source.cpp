@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <iterator>
 #include <limits>
 #include <string_view>
+#include <utility>
 
 #include "foucault/core/error.h"
 #include "foucault/core/time.h"
@@ -24,7 +26,7 @@ void RawlogOptions::fields(ConfigFields& f) {
   f.text("gnss_label", gnss_label, {},
          "sensor label of the GNSS receiver; empty: the first one with a position");
   f.text("reference_label", reference_label, {}, "sensor label of the reference trajectory");
-  f.number("reorder_s", reorder_s, {0, kLongestReorder}, "fixes may come this late [s]");
+  f.number("reorder_s", reorder_s, {0, kLongestReorder}, "records may come this late [s]");
   f.flag("gnss_velocity", gnss_velocity, "read the receiver's velocities");
 }
 
@@ -195,6 +197,9 @@ class RawlogSource::Impl {
   void read_one();
   void dispatch(const LoggedObservation& logged, int64_t t_ns);
   void take_imu(const rawlog::ImuRecord& imu, int64_t record, int64_t t_ns);
+  void take_sample(const ImuSample& sample, int64_t record);
+  void put_in_order(const ImuSample& sample, int64_t record);
+  void convert_until(int64_t t_ns);
   void take_gps(const mrpt::obs::CObservationGPS& gps, int64_t t_ns);
   void take_reference(const ReferencePose& pose, const mrpt::poses::CPose3D& sensor_pose,
                       std::string_view type);
@@ -219,7 +224,9 @@ class RawlogSource::Impl {
   Incrementer incrementer_;
   SourceCounts counts_;
 
-  std::optional<ImuSample> last_sample_;
+  std::optional<ImuSample> ahead_;        ///< far after the one before it; the next one tells
+  std::deque<ImuSample> samples_;         ///< by stamp; others may still come between them
+  std::optional<ImuSample> last_sample_;  ///< of those that are increments now
   int backward_in_a_row_ = 0;
   std::deque<ImuIncrement> increments_;
   std::multimap<int64_t, Measurement> others_;
@@ -294,18 +301,58 @@ void RawlogSource::Impl::take_imu(const rawlog::ImuRecord& imu, int64_t record, 
   ImuSample sample = *imu.sample;
   sample.t_ns = t_ns;
   if (!finite(sample)) return skip_noted(kImu, kNotFinite, t_ns);
-  if (last_sample_ && same(sample, *last_sample_)) {
+  take_sample(sample, record);
+}
+
+/// A stamp far ahead is a hole if the next goes on from there, else a slip of the clock.
+void RawlogSource::Impl::take_sample(const ImuSample& sample, int64_t record) {
+  if (const std::optional<ImuSample> ahead = std::exchange(ahead_, std::nullopt)) {
+    if (sample.t_ns >= ahead->t_ns) {
+      put_in_order(*ahead, record);
+    } else {
+      skip_noted(kImu, "stamp ahead of those that follow", ahead->t_ns);
+    }
+  }
+  constexpr int64_t kFarAhead = kNanosecondsPerSecond;
+  const bool any = newest_imu_ns_ != std::numeric_limits<int64_t>::min();
+  if (any && sample.t_ns - newest_imu_ns_ > kFarAhead) {
+    ahead_ = sample;
+  } else {
+    put_in_order(sample, record);
+  }
+}
+
+void RawlogSource::Impl::put_in_order(const ImuSample& sample, int64_t record) {
+  if (last_sample_ && sample.t_ns <= last_sample_->t_ns) {
+    if (same(sample, *last_sample_)) {
+      ++counts_.imu_duplicates;
+      return;
+    }
+    return skip_backward(record, sample.t_ns);
+  }
+  backward_in_a_row_ = 0;
+  auto place = samples_.end();
+  while (place != samples_.begin() && std::prev(place)->t_ns > sample.t_ns) --place;
+  if (place != samples_.begin() && std::prev(place)->t_ns == sample.t_ns) {
+    if (!same(sample, *std::prev(place))) return skip_noted(kImu, "stamp comes twice", sample.t_ns);
     ++counts_.imu_duplicates;
     return;
   }
-  if (last_sample_ && t_ns <= last_sample_->t_ns) return skip_backward(record, t_ns);
-  backward_in_a_row_ = 0;
-  last_sample_ = sample;
-  newest_imu_ns_ = t_ns;
-  imu_span_.add(t_ns);
+  if (place != samples_.end()) ++counts_.imu_reordered;
+  samples_.insert(place, sample);
   ++counts_.imu_samples;
-  if (const std::optional<ImuIncrement> increment = incrementer_.add(sample)) {
-    increments_.push_back(*increment);
+  imu_span_.add(sample.t_ns);
+  newest_imu_ns_ = std::max(newest_imu_ns_, sample.t_ns);
+  convert_until(newest_imu_ns_ - reorder_ns_);
+}
+
+void RawlogSource::Impl::convert_until(int64_t t_ns) {
+  while (!samples_.empty() && samples_.front().t_ns <= t_ns) {
+    last_sample_ = samples_.front();
+    samples_.pop_front();
+    if (const std::optional<ImuIncrement> increment = incrementer_.add(*last_sample_)) {
+      increments_.push_back(*increment);
+    }
   }
 }
 
@@ -366,13 +413,17 @@ void RawlogSource::Impl::skip_backward(int64_t record, int64_t t_ns) {
   constexpr int kMostInARow = 100;
   if (++backward_in_a_row_ > kMostInARow) {
     fail(record, t_ns,
-         fmt::format("{} IMU stamps in a row do not come after {}; sort the log",
-                     backward_in_a_row_, rawlog::describe_stamp(last_sample_->t_ns)));
+         fmt::format(
+             "{} IMU samples in a row come more than {:g} s after later ones, the last before "
+             "them of {}; sort the log by time",
+             backward_in_a_row_, options_.reorder_s, rawlog::describe_stamp(last_sample_->t_ns)));
   }
-  skip_noted(kImu, "stamp goes back", t_ns);
+  skip_noted(kImu, "comes too late", t_ns);
 }
 
 void RawlogSource::Impl::end() {
+  if (ahead_) put_in_order(*ahead_, stream_.records());
+  convert_until(std::numeric_limits<int64_t>::max());
   const bool usable = counts_.imu_samples > 0 && counts_.fixes > 0;
   if (damage() && !usable) throw DataError(*damage());
   check_overlap();
@@ -415,6 +466,12 @@ std::vector<Notice> RawlogSource::Impl::notices() const {
     notices.push_back({begin_ns, NoticeKind::skipped,
                        fmt::format("{} IMU samples repeat the one before them and were left out",
                                    counts_.imu_duplicates)});
+  }
+  if (counts_.imu_reordered > 0) {
+    notices.push_back(
+        {begin_ns, NoticeKind::skipped,
+         fmt::format("{} IMU samples came after later ones and were put in order by stamp",
+                     counts_.imu_reordered)});
   }
   for (const auto& [name, count] : counts_.skipped) {
     const auto first = first_skipped_ns_.find(name);

@@ -257,18 +257,63 @@ TEST_F(BadLogs, UnknownClassesAreSkipped) {
   EXPECT_EQ(reading.counts.skipped.at("CObservationXYZ"), 1);
 }
 
-TEST_F(BadLogs, AFewImuStampsThatGoBackAreSkipped) {
+/// Samples of which every tenth comes after its successor, with rates that tell their places.
+TEST_F(BadLogs, ImuSamplesOutOfOrderArePutInOrder) {
+  const auto sample = [](int64_t i) {
+    auto imu = imu_at(kBegin + i * 10 * kMs);
+    imu.set(mrpt::obs::IMU_WZ, 0.001 * static_cast<double>(i));
+    return imu;
+  };
   {
     test::GzLog log(scratch_.path("a.rawlog"));
     log.write(gps_at(kBegin));
     for (int64_t i = 0; i < 300; ++i) {
-      log.write(imu_at(kBegin + (i >= 100 && i < 150 ? i - 60 : i) * 10 * kMs));
+      const bool first = i % 10 == 4, second = i % 10 == 5;
+      log.write(sample(first ? i + 1 : second ? i - 1 : i));
+    }
+  }
+  RawlogSource source(scratch_.path("a.rawlog"));
+  int64_t next = 1;
+  while (const std::optional<Measurement> measurement = source.next()) {
+    const auto* increment = std::get_if<ImuIncrement>(&*measurement);
+    if (increment == nullptr) continue;
+    EXPECT_EQ(increment->t_end_ns, kBegin + next * 10 * kMs);
+    EXPECT_NEAR(increment->dtheta_b.z(), 0.01 * 0.001 * static_cast<double>(next), 1e-12);
+    ++next;
+  }
+  EXPECT_EQ(next, 300);
+  EXPECT_EQ(source.counts().imu_reordered, 30);
+  ASSERT_EQ(source.notices().size(), 1U);
+  EXPECT_THAT(source.notices()[0].text, HasSubstr("30 IMU samples came after later ones"));
+}
+
+TEST_F(BadLogs, ImuSamplesThatComeTooLateAreSkipped) {
+  {
+    test::GzLog log(scratch_.path("a.rawlog"));
+    log.write(gps_at(kBegin + 100 * kMs));
+    for (int64_t i = 0; i < 600; ++i) {
+      log.write(imu_at(kBegin + (i >= 400 && i < 450 ? i - 350 : i) * 10 * kMs + 5 * kMs));
     }
   }
   const Reading reading = read_through(scratch_.path("a.rawlog"));
-  EXPECT_EQ(reading.counts.imu_samples, 250);
-  EXPECT_EQ(reading.counts.skipped.at("CObservationIMU (stamp goes back)"), 50);
-  EXPECT_EQ(reading.notices.at(0).t_ns, kBegin + 400 * kMs);
+  EXPECT_EQ(reading.counts.imu_samples, 550);
+  EXPECT_EQ(reading.counts.skipped.at("CObservationIMU (comes too late)"), 50);
+  EXPECT_EQ(reading.notices.at(0).t_ns, kBegin + 505 * kMs);
+}
+
+TEST_F(BadLogs, AStampFarAheadOfThoseThatFollowIsSkipped) {
+  {
+    test::GzLog log(scratch_.path("a.rawlog"));
+    log.write(gps_at(kBegin));
+    for (int64_t i = 0; i < 300; ++i) {
+      log.write(imu_at(kBegin + i * 10 * kMs + (i == 100 ? 3600'000 * kMs : 0)));
+    }
+    log.write(imu_at(kBegin + 9000 * kMs));  // after a hole, and confirmed by
+    log.write(imu_at(kBegin + 9010 * kMs));
+  }
+  const Reading reading = read_through(scratch_.path("a.rawlog"));
+  EXPECT_EQ(reading.counts.imu_samples, 301);
+  EXPECT_EQ(reading.counts.skipped.at("CObservationIMU (stamp ahead of those that follow)"), 1);
 }
 
 TEST_F(BadLogs, ALogThatIsNotInOrder) {
@@ -277,10 +322,11 @@ TEST_F(BadLogs, ALogThatIsNotInOrder) {
     log.write(gps_at(kBegin));
     for (int64_t i = 0; i < 1000; ++i) log.write(imu_at(kBegin + (i + 500) % 1000 * 10 * kMs));
   }
-  EXPECT_THAT(
-      error(scratch_.path("a.rawlog")),
-      AllOf(HasSubstr("record 602 at 2020-09-13T12:26:41.000Z"),
-            HasSubstr("do not come after 2020-09-13T12:26:49.990Z"), HasSubstr("sort the log")));
+  EXPECT_THAT(error(scratch_.path("a.rawlog")),
+              AllOf(HasSubstr("record 602 at 2020-09-13T12:26:41.000Z"),
+                    HasSubstr("more than 2 s after later ones, the last before them of "
+                              "2020-09-13T12:26:47.990Z"),
+                    HasSubstr("sort the log")));
 }
 
 TEST_F(BadLogs, NothingFinite) {

@@ -19,7 +19,7 @@ class RawlogOptions : public Configurable {
   std::string imu_label;                      ///< sensorLabel of the IMU; empty: the first one
   std::string gnss_label;                     ///< of the receiver; empty: the first with a position
   std::string reference_label = "REFERENCE";  ///< of the reference trajectory
-  double reorder_s = 2.0;                     ///< fixes may come this late [s]
+  double reorder_s = 2.0;                     ///< records may come this late [s]
   bool gnss_velocity = true;                  ///< read velocities of the receiver
 
   void fields(ConfigFields& f) override;
@@ -32,6 +32,7 @@ struct SourceCounts {
   int64_t references = 0;
   int64_t wheel_speeds = 0;
   int64_t imu_duplicates = 0;  ///< samples equal to their predecessor, stamp included; dropped
+  int64_t imu_reordered = 0;   ///< samples that came after later ones; put in order
   int64_t late = 0;            ///< came more than reorder_s after their stamp; dropped
   std::map<std::string, int64_t> skipped;  ///< everything else, by class (and reason)
 };
@@ -49,15 +50,17 @@ struct SourceCounts {
 /// CObservationRobotPose -> the same, its frame being East-North-Up at the first fix.
 /// CObservationOdometry with velocities -> WheelSpeed. The rest is skipped and counted by class.
 ///
-/// Order: by stamp, as core/measurement.h says. Fixes may come up to reorder_s late.
+/// Order: by stamp, as core/measurement.h says. IMU samples and fixes may come up to reorder_s
+/// late. An IMU stamp more than a second ahead of the one before it counts if the next confirms it.
 /// Memory: constant; it grows only with what lies within reorder_s, or ahead of the IMU.
 ///
-/// Values that are not finite are skipped and counted, and so are IMU samples whose stamps go back.
+/// Values that are not finite are skipped and counted, and so are IMU samples that come later than
+/// reorder_s or repeat a stamp.
 /// Damage in the log (truncated, corrupt, records of a newer MRPT) ends it: everything before comes
 /// out, then next() gives none and damage() says what and where.
 ///
 /// Throws DataError, one line naming the file, for: missing, a directory, empty, not a rawlog, no
-/// IMU, no GNSS, damage before the first of either, more than 100 IMU stamps in a row that go back
+/// IMU, no GNSS, damage before the first of either, more than 100 IMU samples in a row that come too late
 /// (record number and stamp), IMU and GNSS that do not overlap in time or fixes that are all late
 /// (when the log ends).
 class RawlogSource : public Source {
