@@ -8,6 +8,7 @@ const std::vector<Command>& commands() {
       {"simulate", "write a simulated recording with its truth", declare_simulate},
       {"import", "turn recordings in other formats into a rawlog", declare_import},
       {"info", "contents, rates, gaps and health of a rawlog", declare_info},
+      {"check", "judge a rawlog: clocks, units, axes, noise, sigmas", declare_check},
       {"run", "process a rawlog: solution files, metrics, report", declare_run},
       {"evaluate", "withhold fixes, measure the drift of every method", declare_evaluate},
       {"tune", "search the parameters with the least drift", declare_tune},

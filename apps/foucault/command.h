@@ -32,6 +32,7 @@ std::function<void(Call&)> declare_demo(CLI::App& app);
 std::function<void(Call&)> declare_simulate(CLI::App& app);
 std::function<void(Call&)> declare_import(CLI::App& app);
 std::function<void(Call&)> declare_info(CLI::App& app);
+std::function<void(Call&)> declare_check(CLI::App& app);
 std::function<void(Call&)> declare_run(CLI::App& app);
 std::function<void(Call&)> declare_evaluate(CLI::App& app);
 std::function<void(Call&)> declare_tune(CLI::App& app);

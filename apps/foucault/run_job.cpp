@@ -8,6 +8,7 @@
 
 #include "foucault/core/error.h"
 #include "foucault/core/profile.h"
+#include "foucault/inertial/log_check.h"
 #include "foucault/rawlog/rawlog_source.h"
 #include "foucault/reports/run_report.h"
 #include "methods.h"
@@ -45,6 +46,11 @@ void read_batch(RawlogSource& source, std::vector<Measurement>& batch) {
   }
 }
 
+void check_batch(const std::vector<Measurement>& batch, LogChecker& checker) {
+  const StageTimer timer(Stage::statistics);
+  for (const Measurement& measurement : batch) checker.add(measurement);
+}
+
 void process_batch(const std::vector<Measurement>& batch, Estimator& estimator, RunOutput& output) {
   for (const Measurement& measurement : batch) {
     output.measurement(measurement);
@@ -52,17 +58,28 @@ void process_batch(const std::vector<Measurement>& batch, Estimator& estimator, 
   }
 }
 
+void warn(const LogChecker& checker, RunOutput& output) {
+  const int64_t begin_ns = checker.facts().imu.first_ns;
+  for (const Finding& finding : checker.findings()) {
+    if (finding.severity == Severity::ok) continue;
+    output.notice({begin_ns, NoticeKind::skipped,
+                   fmt::format("{}: {} ({})", finding.subject, finding.text, finding.remedy)});
+  }
+}
+
 void process(const std::string& log, RawlogSource& source, Estimator& estimator, Stage per_sample,
-             RunOutput& output, Console& console) {
+             RunOutput& output, LogChecker& checker, Console& console) {
   std::vector<Measurement> batch;
   batch.reserve(kBatch);
   for (read_batch(source, batch); !batch.empty(); read_batch(source, batch)) {
+    check_batch(batch, checker);
     const StageTimer timer(per_sample);
     naming(log, [&] { process_batch(batch, estimator, output); });
     console.progress("processing", source.progress());
   }
   naming(log, [&] { estimator.finish(); });
   for (const Notice& notice : source.notices()) output.notice(notice);
+  warn(checker, output);
   if (source.damage()) output.damage(*source.damage());
 }
 
@@ -96,7 +113,8 @@ RunResult run_into(const RunJob& job, const std::filesystem::path& folder, Conso
   RunOutput output(folder, source.mounting(), settings.output, method.keep_references_s,
                    report ? &*report : nullptr, console);
   const std::unique_ptr<Estimator> estimator = method.make(settings, source.mounting(), output);
-  process(job.log, source, *estimator, method.per_sample, output, console);
+  LogChecker checker(settings.imu.noise(), source.mounting());
+  process(job.log, source, *estimator, method.per_sample, output, checker, console);
 
   RunResult result;
   result.method = job.method;

@@ -5,11 +5,13 @@
 #include <memory>
 
 #include "command.h"
+#include "fault_study.h"
 #include "foucault/evaluation/task_pool.h"
 #include "foucault/reports/report_page.h"
 #include "laboratory_output.h"
 #include "laboratory_report.h"
 #include "output_directory.h"
+#include "text_file.h"
 
 namespace foucault::app {
 namespace {
@@ -59,10 +61,79 @@ void study_preintegration(const LabOptions& options, Call& call) {
   }
 }
 
+struct FaultStudyOptions {
+  std::vector<std::string> faults;
+  std::vector<std::string> methods{"ekf", "refined", "full"};
+  std::vector<int64_t> seeds{1};
+  int jobs = processor_count();
+  std::string out = "foucault-faults";
+};
+
+struct FaultTask {
+  std::string fault;
+  std::string method;
+  int64_t seed;
+};
+
+std::vector<FaultTask> fault_tasks(const FaultStudyOptions& options) {
+  std::vector<std::string> names = options.faults;
+  if (names.empty()) {
+    for (const FaultCase& fault : fault_cases()) names.push_back(fault.name);
+  }
+  std::vector<FaultTask> tasks;
+  for (const std::string& name : names) {
+    find_fault_case(name);
+    for (const std::string& method : options.methods) {
+      for (const int64_t seed : options.seeds) tasks.push_back({name, method, seed});
+    }
+  }
+  return tasks;
+}
+
+void study_faults(const FaultStudyOptions& options, Call& call) {
+  const std::vector<FaultTask> tasks = fault_tasks(options);
+  OutputDirectory directory(options.out);
+  std::vector<FaultOutcome> outcomes(tasks.size());
+  run_tasks(
+      tasks.size(), options.jobs,
+      [&](std::size_t i, const TaskProgress& progress) {
+        progress(0);
+        const FaultTask& task = tasks[i];
+        outcomes[i] = run_fault(find_fault_case(task.fault), task.method, Settings(), task.seed);
+      },
+      call.console.progress_of("faults"));
+  const TextTable table = fault_table(outcomes);
+  write_text_file(directory.staging() / "faults.csv", to_csv(table));
+  write_text_file(directory.staging() / "faults.md", to_markdown(table));
+  directory.commit();
+  call.console.say(fmt::format("{:<10} {}", "written", options.out));
+}
+
+CLI::App* declare_fault_study(CLI::App& app, FaultStudyOptions& o) {
+  CLI::App* faults = app.add_subcommand(
+      "faults", "What faults of recordings do to the methods, on simulated trips");
+  faults->fallthrough();
+  faults->add_option("--fault", o.faults, "Which ones, separated by commas; default: all")
+      ->delimiter(',');
+  faults->add_option("--methods", o.methods, "Separated by commas")
+      ->delimiter(',')
+      ->capture_default_str();
+  faults->add_option("--seeds", o.seeds, "Of the trips, separated by commas")
+      ->delimiter(',')
+      ->capture_default_str();
+  faults->add_option("--jobs", o.jobs, "Runs at the same time")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+  faults->add_option("--out", o.out, "Folder for faults.csv and faults.md")->capture_default_str();
+  return faults;
+}
+
 }  // namespace
 
 std::function<void(Call&)> declare_lab(CLI::App& app) {
   app.require_subcommand(1);
+  const auto faults = std::make_shared<FaultStudyOptions>();
+  CLI::App* fault_study = declare_fault_study(app, *faults);
   CLI::App* preintegration = app.add_subcommand(
       "preintegration", "Error of rough, refined and full, and of each term, on exact motion");
   preintegration->fallthrough();
@@ -85,7 +156,13 @@ std::function<void(Call&)> declare_lab(CLI::App& app) {
       "\nExamples:\n"
       "  foucault lab preintegration --out lab\n"
       "  foucault lab preintegration --motion vibration,airliner --out lab");
-  return [o](Call& call) { study_preintegration(*o, call); };
+  return [o, faults, fault_study](Call& call) {
+    if (fault_study->parsed()) {
+      study_faults(*faults, call);
+    } else {
+      study_preintegration(*o, call);
+    }
+  };
 }
 
 }  // namespace foucault::app

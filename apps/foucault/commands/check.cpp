@@ -1,0 +1,84 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "command.h"
+#include "config_arguments.h"
+#include "foucault/core/error.h"
+#include "foucault/inertial/log_check.h"
+#include "foucault/rawlog/rawlog_source.h"
+#include "settings.h"
+
+namespace foucault::app {
+namespace {
+
+std::string config_help() {
+  Settings settings;
+  return describe_config(settings);
+}
+
+const char* name_of(Severity severity) {
+  switch (severity) {
+    case Severity::ok:
+      return "ok";
+    case Severity::warning:
+      return "warning";
+    case Severity::error:
+      return "error";
+  }
+  return "";
+}
+
+void print(const std::vector<Finding>& findings) {
+  for (const Finding& finding : findings) {
+    fmt::print("{:<8} {:<20} {}\n", name_of(finding.severity), finding.subject, finding.text);
+    if (!finding.remedy.empty()) fmt::print("{:<8} {:<20} -> {}\n", "", "", finding.remedy);
+  }
+}
+
+void check(const std::string& log, const Settings& settings, Console& console) {
+  RawlogSource source(log, settings.imu.sample_kind(), settings.rawlog);
+  LogChecker checker(settings.imu.noise(), source.mounting());
+  while (const std::optional<Measurement> measurement = source.next()) {
+    checker.add(*measurement);
+    console.progress("checking", source.progress());
+  }
+  console.clear_progress();
+  const std::vector<Finding> findings = checker.findings();
+  print(findings);
+  for (const Notice& notice : source.notices()) {
+    fmt::print("{:<8} {:<20} {}\n", "warning", "log", notice.text);
+  }
+  if (source.damage()) throw DataError(*source.damage());
+  const auto errors = std::count_if(findings.begin(), findings.end(), [](const Finding& finding) {
+    return finding.severity == Severity::error;
+  });
+  if (errors > 0) {
+    throw DataError(
+        fmt::format("'{}': {} of the findings above must be mended first", log, errors));
+  }
+}
+
+}  // namespace
+
+std::function<void(Call&)> declare_check(CLI::App& app) {
+  struct Options {
+    std::string log;
+    ConfigArguments config;
+  };
+  const auto options = std::make_shared<Options>();
+  app.add_option("LOG", options->log, "Rawlog to judge")->required();
+  add_config_options(app, options->config, config_help);
+  app.footer(
+      "\nWhat is looked at: rates and holes, overlap, sigmas of fixes, lever arm, units and axes,\n"
+      "the time offset between IMU and GNSS, noise and bias of the IMU at rest against imu.*.\n"
+      "Exit code 1 if something must be mended before the log is processed.");
+  return [options](Call& call) {
+    Settings settings;
+    apply(options->config, settings);
+    check(options->log, settings, call.console);
+  };
+}
+
+}  // namespace foucault::app
