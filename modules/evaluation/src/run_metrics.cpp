@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <cmath>
+#include <utility>
 
 #include "foucault/core/so3.h"
 #include "foucault/core/state.h"
@@ -18,6 +19,15 @@ Eigen::Vector3d rotation_error(const VehicleAttitude& attitude,
                          attitude.euler.pitch - euler_error[1],
                          attitude.euler.heading - euler_error[2]};
   return so3::log(attitude.q_n_v.conjugate() * so3::from_euler(truth));
+}
+
+Eigen::Vector3d sigmas(const Eigen::Matrix3d& covariance) {
+  return covariance.diagonal().cwiseMax(0).cwiseSqrt();
+}
+
+std::optional<double> mean_of(const std::optional<SquareConsistency>& squares) {
+  if (!squares) return std::nullopt;
+  return squares->mean;
 }
 
 }  // namespace
@@ -41,17 +51,6 @@ Eigen::Vector3d RunMetricsCollector::Squares::mean() const {
   return sum / static_cast<double>(samples);
 }
 
-void RunMetricsCollector::Mean::add(std::optional<double> value) {
-  if (!value) return;
-  ++samples;
-  sum += *value;
-}
-
-std::optional<double> RunMetricsCollector::Mean::value() const {
-  if (samples == 0) return std::nullopt;
-  return sum / static_cast<double>(samples);
-}
-
 void RunMetricsCollector::Errors::add(const Eigen::Vector3d& error, const Eigen::Vector3d& sigma) {
   squares.add(error);
   for (int axis = 0; axis < 3; ++axis) {
@@ -66,8 +65,9 @@ InsideSigma RunMetricsCollector::Errors::inside_sigma() const {
   return {squares.samples, inside / static_cast<double>(squares.samples)};
 }
 
-RunMetricsCollector::RunMetricsCollector(const Mounting& mounting, int64_t from_ns)
-    : mounting_(mounting), from_ns_(from_ns) {}
+RunMetricsCollector::RunMetricsCollector(const Mounting& mounting, int64_t from_ns,
+                                         ConsistencyCollector::Callback on_square)
+    : mounting_(mounting), from_ns_(from_ns), consistency_(from_ns, std::move(on_square)) {}
 
 void RunMetricsCollector::epoch(const Epoch& epoch) {
   if (epochs_ == 0) first_ns_ = epoch.t_ns;
@@ -76,6 +76,7 @@ void RunMetricsCollector::epoch(const Epoch& epoch) {
 }
 
 void RunMetricsCollector::fix(const FixResult& fix) {
+  consistency_.fix(fix);
   if (fix.verdict != FixVerdict::used) {
     ++rejected_;
     return;
@@ -84,31 +85,35 @@ void RunMetricsCollector::fix(const FixResult& fix) {
   if (fix.t_ns < from_ns_) return;
   innovation_.add(fix.innovation_n);
   postfit_.add(fix.postfit_n);
-  nis_.add(normalized_square(fix.innovation_n, fix.innovation_covariance));
 }
 
 void RunMetricsCollector::reference_error(const Epoch& epoch, const ReferenceError& error) {
-  if (error.t_ns < from_ns_) return;
   const auto covariance = [&epoch](int offset) -> Eigen::Matrix3d {
     return epoch.covariance.block<3, 3>(offset, offset);
   };
-  const auto add = [](Errors& errors, const Eigen::Vector3d& value, const Eigen::Matrix3d& P) {
-    errors.add(value, P.diagonal().cwiseMax(0).cwiseSqrt());
-    errors.nees.add(normalized_square(value, P));
-  };
-  add(position_, error.position_n, covariance(error_state::kPosition));
-  if (error.velocity_n) add(velocity_, *error.velocity_n, covariance(error_state::kVelocity));
-  if (error.euler) add_attitude(epoch, *error.euler);
+  const Eigen::Matrix3d position = covariance(error_state::kPosition);
+  const Eigen::Matrix3d velocity = covariance(error_state::kVelocity);
+  const int64_t t_ns = error.t_ns;
+  consistency_.error(NormalizedKind::position, t_ns, error.position_n, position);
+  if (error.velocity_n) {
+    consistency_.error(NormalizedKind::velocity, t_ns, *error.velocity_n, velocity);
+  }
+  if (error.euler) add_attitude(epoch, t_ns, *error.euler);
+  if (t_ns < from_ns_) return;
+  position_.add(error.position_n, sigmas(position));
+  if (error.velocity_n) velocity_.add(*error.velocity_n, sigmas(velocity));
 }
 
-void RunMetricsCollector::add_attitude(const Epoch& epoch, const Eigen::Vector3d& euler_error) {
+void RunMetricsCollector::add_attitude(const Epoch& epoch, int64_t t_ns,
+                                       const Eigen::Vector3d& euler_error) {
   const VehicleAttitude attitude = vehicle_attitude(epoch, mounting_);
+  const Eigen::Vector3d rotation = rotation_error(attitude, euler_error);
+  consistency_.error(NormalizedKind::attitude, t_ns, rotation, attitude.covariance_v);
+  if (t_ns < from_ns_) return;
   attitude_.add(euler_error, attitude.sigma);
-  attitude_.nees.add(
-      normalized_square(rotation_error(attitude, euler_error), attitude.covariance_v));
 }
 
-ReferenceMetrics RunMetricsCollector::reference_metrics() const {
+ReferenceMetrics RunMetricsCollector::reference_metrics(const Consistency& consistency) const {
   ReferenceMetrics m;
   m.samples = position_.squares.samples;
   const Eigen::Vector3d position = position_.squares.mean();
@@ -124,9 +129,9 @@ ReferenceMetrics RunMetricsCollector::reference_metrics() const {
   m.position_inside = position_.inside_sigma();
   m.velocity_inside = velocity_.inside_sigma();
   m.attitude_inside = attitude_.inside_sigma();
-  m.position_nees = position_.nees.value();
-  m.velocity_nees = velocity_.nees.value();
-  m.attitude_nees = attitude_.nees.value();
+  m.position_nees = mean_of(consistency.position_nees);
+  m.velocity_nees = mean_of(consistency.velocity_nees);
+  m.attitude_nees = mean_of(consistency.attitude_nees);
   return m;
 }
 
@@ -139,8 +144,9 @@ RunMetrics RunMetricsCollector::metrics() const {
   m.gnss.samples = innovation_.samples;
   m.gnss.innovation_rms_n = innovation_.mean().cwiseSqrt();
   m.gnss.postfit_rms_n = postfit_.mean().cwiseSqrt();
-  m.gnss.mean_nis = nis_.value().value_or(0);
-  if (position_.squares.samples > 0) m.reference = reference_metrics();
+  m.consistency = consistency_.result();
+  m.gnss.mean_nis = m.consistency.nis.mean;
+  if (position_.squares.samples > 0) m.reference = reference_metrics(m.consistency);
   return m;
 }
 

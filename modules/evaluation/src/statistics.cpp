@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <random>
 #include <stdexcept>
+#include <utility>
 
 namespace foucault {
 namespace {
@@ -96,6 +98,30 @@ double gamma_p(double a, double x) {
   return 1 - front * fraction;
 }
 
+/// Values less their mean.
+class Deviations {
+ public:
+  explicit Deviations(std::vector<double> values) : values_(std::move(values)) {
+    const double centre = mean(values_);
+    for (double& value : values_) value -= centre;
+    square_ = product(0);
+  }
+
+  double correlation(std::size_t lag) const {
+    if (lag == 0) return 1;
+    return square_ > 0 ? product(lag) / square_ : 0;
+  }
+
+ private:
+  double product(std::size_t lag) const {
+    const auto later = values_.begin() + static_cast<std::ptrdiff_t>(lag);
+    return std::inner_product(later, values_.end(), values_.begin(), 0.0);
+  }
+
+  std::vector<double> values_;
+  double square_ = 0;
+};
+
 }  // namespace
 
 double mean(const std::vector<double>& values) {
@@ -169,10 +195,31 @@ double chi_square_quantile(double p, double dof) {
   return (low + high) / 2;
 }
 
-Band mean_nees_band(int dof, int64_t runs, double probability) {
-  const double n = static_cast<double>(runs);
-  return {chi_square_quantile((1 - probability) / 2, dof * n) / n,
-          chi_square_quantile((1 + probability) / 2, dof * n) / n};
+Band mean_nees_band(int dof, double samples, double probability) {
+  return {chi_square_quantile((1 - probability) / 2, dof * samples) / samples,
+          chi_square_quantile((1 + probability) / 2, dof * samples) / samples};
+}
+
+std::vector<double> autocorrelation(const std::vector<double>& values, std::size_t max_lag) {
+  const Deviations deviations(values);
+  std::vector<double> result;
+  for (std::size_t lag = 1; lag <= max_lag && lag < values.size(); ++lag) {
+    result.push_back(deviations.correlation(lag));
+  }
+  return result;
+}
+
+double integrated_autocorrelation(const std::vector<double>& values) {
+  const Deviations deviations(values);
+  double sum = 0;
+  double last = std::numeric_limits<double>::infinity();
+  for (std::size_t lag = 0; lag + 1 < values.size(); lag += 2) {
+    const double pair = deviations.correlation(lag) + deviations.correlation(lag + 1);
+    if (pair <= 0) break;
+    last = std::min(last, pair);
+    sum += last;
+  }
+  return std::max(1.0, 2 * sum - 1);
 }
 
 }  // namespace foucault

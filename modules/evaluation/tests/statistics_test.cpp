@@ -129,6 +129,11 @@ TEST(ChiSquare, KnownQuantiles) {
   EXPECT_NEAR(chi_square_quantile(0.95, 1), 3.841458820694124, 1e-11);
   EXPECT_NEAR(chi_square_quantile(0.95, 3), 7.814727903251179, 1e-11);
   EXPECT_NEAR(chi_square_quantile(0.025, 3), 0.2157952826238982, 1e-12);
+  EXPECT_NEAR(chi_square_quantile(0.975, 3), 9.348404, 5e-7);
+  EXPECT_NEAR(chi_square_quantile(0.99, 5), 15.086272, 5e-7);
+  EXPECT_NEAR(chi_square_quantile(0.025, 1), 0.000982069, 5e-10);
+  EXPECT_NEAR(chi_square_quantile(0.025, 90), 65.646618, 5e-7);
+  EXPECT_NEAR(chi_square_quantile(0.975, 90), 118.135893, 5e-7);
   EXPECT_NEAR(chi_square_quantile(0.5, 2), 2 * std::log(2), 1e-12);
   EXPECT_NEAR(chi_square_quantile(0.975, 100), 129.5611971858366, 1e-9);
   // 1500 degrees: near a Gaussian of variance 3000, Wilson and Hilferty to 1e-3.
@@ -141,6 +146,34 @@ TEST(ChiSquare, BandOfFiftyRuns) {
   const Band band = mean_nees_band(3, 50);
   EXPECT_NEAR(band.low, 117.98 / 50, 1e-3);
   EXPECT_NEAR(band.high, 185.80 / 50, 1e-3);
+}
+
+TEST(ChiSquare, BandOfAnEffectiveNumber) {
+  // 2.5 samples of 3 components: 7.5 degrees, between the tables' 7 (1.690, 16.013) and 8 (2.180,
+  // 17.535).
+  const Band band = mean_nees_band(3, 2.5);
+  EXPECT_GT(2.5 * band.low, 1.690);
+  EXPECT_LT(2.5 * band.low, 2.180);
+  EXPECT_GT(2.5 * band.high, 16.013);
+  EXPECT_LT(2.5 * band.high, 17.535);
+}
+
+TEST(Autocorrelation, ByHand) {
+  // Deviations -1.5, -0.5, 0.5, 1.5, squares 5.
+  const std::vector<double> r = autocorrelation({1, 2, 3, 4}, 9);
+  ASSERT_EQ(r.size(), 3U);
+  EXPECT_NEAR(r[0], 1.25 / 5, 1e-15);
+  EXPECT_NEAR(r[1], -1.5 / 5, 1e-15);
+  EXPECT_NEAR(r[2], -2.25 / 5, 1e-15);
+  EXPECT_EQ(autocorrelation({2, 2, 2}, 2), (std::vector<double>{0, 0}));
+  EXPECT_TRUE(autocorrelation({}, 2).empty());
+}
+
+TEST(Autocorrelation, IntegratedByHand) {
+  EXPECT_NEAR(integrated_autocorrelation({1, 2, 3, 4}), 1.5, 1e-14);  // lags 2, 3: negative
+  EXPECT_EQ(integrated_autocorrelation({1, -1, 1, -1}), 1);           // less than independent
+  EXPECT_EQ(integrated_autocorrelation({2, 2, 2}), 1);
+  EXPECT_EQ(integrated_autocorrelation({}), 1);
 }
 
 }  // namespace

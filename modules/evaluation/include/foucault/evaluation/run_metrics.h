@@ -7,6 +7,7 @@
 
 #include "foucault/core/interfaces.h"
 #include "foucault/core/result.h"
+#include "foucault/evaluation/consistency.h"
 
 namespace foucault {
 
@@ -47,19 +48,21 @@ struct RunMetrics {
   double duration_s = 0;  ///< from the first to the last epoch
   GnssMetrics gnss;
   std::optional<ReferenceMetrics> reference;  ///< none if no epoch had a reference
+  Consistency consistency;
 };
 
 /// Normalized estimation error squared, e' P^-1 e. None if P is not positive definite.
 std::optional<double> normalized_square(const Eigen::Vector3d& error,
                                         const Eigen::Matrix3d& covariance);
 
-/// Collects the metrics of a run, in constant memory.
+/// Collects the metrics of a run, in bounded memory.
 class RunMetricsCollector : public Sink {
  public:
   /// Statistics count from `from_ns` on (a settling time is left out); counts of epochs and fixes
-  /// and the duration are over the whole run.
+  /// and the duration are over the whole run. `on_square` is told every normalized square.
   explicit RunMetricsCollector(const Mounting& mounting,
-                               int64_t from_ns = std::numeric_limits<int64_t>::min());
+                               int64_t from_ns = std::numeric_limits<int64_t>::min(),
+                               ConsistencyCollector::Callback on_square = {});
 
   void epoch(const Epoch& epoch) override;
   void fix(const FixResult& fix) override;
@@ -76,24 +79,16 @@ class RunMetricsCollector : public Sink {
     Eigen::Vector3d mean() const;
   };
 
-  struct Mean {
-    int64_t samples = 0;
-    double sum = 0;
-    void add(std::optional<double> value);
-    std::optional<double> value() const;
-  };
-
-  /// Errors of one kind with their covariances.
+  /// Errors of one kind with their sigmas.
   struct Errors {
     Squares squares;
     Eigen::Matrix3d inside = Eigen::Matrix3d::Zero();
-    Mean nees;
     void add(const Eigen::Vector3d& error, const Eigen::Vector3d& sigma);
     InsideSigma inside_sigma() const;
   };
 
-  void add_attitude(const Epoch& epoch, const Eigen::Vector3d& euler_error);
-  ReferenceMetrics reference_metrics() const;
+  void add_attitude(const Epoch& epoch, int64_t t_ns, const Eigen::Vector3d& euler_error);
+  ReferenceMetrics reference_metrics(const Consistency& consistency) const;
 
   Mounting mounting_;
   int64_t from_ns_;
@@ -104,10 +99,10 @@ class RunMetricsCollector : public Sink {
   int64_t rejected_ = 0;
   Squares innovation_;
   Squares postfit_;
-  Mean nis_;
   Errors position_;
   Errors velocity_;
   Errors attitude_;
+  ConsistencyCollector consistency_;
 };
 
 }  // namespace foucault

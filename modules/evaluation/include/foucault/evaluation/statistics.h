@@ -1,9 +1,13 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
-/// Statistics of drifts over outages. Samples are few, so each number has a bootstrap interval.
+#include "foucault/core/consistency.h"
+
+/// Statistics of drifts over outages: samples are few, so each number has a bootstrap interval; and
+/// of correlated samples.
 namespace foucault {
 
 double root_mean_square(const std::vector<double>& values);
@@ -53,13 +57,18 @@ PairedComparison compare_paired(const std::vector<double>& base, const std::vect
 /// Quantile of the chi-square distribution, p in (0, 1), dof > 0.
 double chi_square_quantile(double p, double dof);
 
-struct Band {
-  double low = 0;
-  double high = 0;
-};
+/// Where the mean over `samples` independent NEES (or NIS) of `dof` components lies with the given
+/// probability if the covariance is right: chi-square of dof * samples, over samples, which may be
+/// an effective number.
+Band mean_nees_band(int dof, double samples, double probability = 0.95);
 
-/// Where the mean over `runs` independent NEES (or NIS) of `dof` components lies with the given
-/// probability if the covariance is right.
-Band mean_nees_band(int dof, int64_t runs, double probability = 0.95);
+/// Autocorrelation at lags 1 ... max_lag (fewer if the values end before), mean removed, all lags
+/// divided by the number of values (Box and Jenkins 1976). Zero if all values are equal.
+std::vector<double> autocorrelation(const std::vector<double>& values, std::size_t max_lag);
+
+/// 1 + 2 sum of the autocorrelation, at least 1: variance of the mean of these values, relative to
+/// that of as many independent ones. Summed over pairs of lags while these are positive and do not
+/// grow (Geyer 1992, initial monotone sequence).
+double integrated_autocorrelation(const std::vector<double>& values);
 
 }  // namespace foucault
