@@ -56,6 +56,51 @@ Json reference_json(const ReferenceMetrics& reference) {
           {"samples", reference.samples}};
 }
 
+Json square_json(const SquareConsistency& squares) {
+  const bool exists = squares.samples > 0;
+  const auto number = [exists](double value) { return exists ? Json(value) : Json(nullptr); };
+  return {{"mean", number(squares.mean)},
+          {"mean_low", number(squares.mean_band.low)},
+          {"mean_high", number(squares.mean_band.high)},
+          {"inside_95", number(squares.inside_share)},
+          {"samples", squares.samples},
+          {"effective_samples", number(squares.effective_samples)}};
+}
+
+Json residual_json(const ResidualStatistics& s) {
+  if (s.samples == 0) return nullptr;
+  return {{"mean", s.mean},
+          {"sigma", s.sigma},
+          {"excess_kurtosis", number_or_null(s.excess_kurtosis)},
+          {"inside_1_sigma", s.inside[0]},
+          {"inside_2_sigma", s.inside[1]},
+          {"inside_3_sigma", s.inside[2]}};
+}
+
+Json autocorrelation_json(const ResidualAutocorrelation& a) {
+  if (a.lag.empty()) return nullptr;
+  return {{"lags", a.lag.size()},
+          {"interval_s", a.interval_s},
+          {"white_bound", a.white_bound},
+          {"outside_share", a.outside_share},
+          {"lag_1", north_east_down(a.lag.front(), true)}};
+}
+
+Json consistency_json(const Consistency& c) {
+  Json json{{"bound_low", c.single_band.low},
+            {"bound_high", c.single_band.high},
+            {"nis", square_json(c.nis)},
+            {"whitened_innovation",
+             {{"north", residual_json(c.innovations[0])},
+              {"east", residual_json(c.innovations[1])},
+              {"down", residual_json(c.innovations[2])}}},
+            {"autocorrelation", autocorrelation_json(c.autocorrelation)}};
+  if (c.position_nees) json["position_nees"] = square_json(*c.position_nees);
+  if (c.velocity_nees) json["velocity_nees"] = square_json(*c.velocity_nees);
+  if (c.attitude_nees) json["attitude_nees"] = square_json(*c.attitude_nees);
+  return json;
+}
+
 Json profile_json(const std::vector<StageTime>& profile) {
   Json json = Json::object();
   for (const StageTime& time : profile) {
@@ -130,6 +175,7 @@ std::string metrics_json(const RunResult& result) {
             {"duration_s", m.duration_s},
             {"gnss", gnss_json(m.gnss)}};
   if (m.reference) json["reference"] = reference_json(*m.reference);
+  json["consistency"] = consistency_json(m.consistency);
   json["statistics_from_s"] = result.statistics_from_s;
   json["cpu_s"] = result.resources.cpu_s;
   json["wall_s"] = result.resources.wall_s;

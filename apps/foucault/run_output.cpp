@@ -36,12 +36,19 @@ RunOutput::RunOutput(const std::filesystem::path& folder, const Mounting& mounti
 
 void RunOutput::measurement(const Measurement& measurement) {
   if (const auto* fix = std::get_if<GnssFix>(&measurement)) {
-    if (!metrics_) metrics_.emplace(mounting_, fix->t_ns + nanoseconds(statistics_from_s_));
+    if (!metrics_) start_metrics(fix->t_ns);
   } else if (const auto* reference = std::get_if<ReferencePose>(&measurement)) {
     comparison_.add(*reference);
   } else if (const auto* increment = std::get_if<ImuIncrement>(&measurement)) {
     if (report_ != nullptr) report_->imu_stamp(increment->t_end_ns);
   }
+}
+
+void RunOutput::start_metrics(int64_t first_fix_ns) {
+  metrics_.emplace(mounting_, first_fix_ns + nanoseconds(statistics_from_s_),
+                   [this](const NormalizedSquare& square) {
+                     if (report_ != nullptr) report_->normalized_square(square);
+                   });
 }
 
 void RunOutput::epoch(const Epoch& epoch) {
@@ -90,7 +97,10 @@ void RunOutput::reference_error(const Epoch& epoch, const ReferenceError& error)
 RunMetrics RunOutput::finish() {
   const StageTimer timer(Stage::write);
   solution_.finish();
-  return metrics_ ? metrics_->metrics() : RunMetrics{};
+  if (!metrics_) return {};
+  const RunMetrics metrics = metrics_->metrics();
+  if (report_ != nullptr) report_->consistency(metrics.consistency);
+  return metrics;
 }
 
 }  // namespace foucault::app

@@ -31,10 +31,11 @@ class RunOutput : public Sink {
   /// Why the log broke off, for the report; the command says it at its end.
   void damage(const std::string& text);
 
-  /// Completes the files.
+  /// Completes the files, and what the report needs.
   RunMetrics finish();
 
  private:
+  void start_metrics(int64_t first_fix_ns);
   void write(const Epoch& epoch);
   void collect(const Epoch& epoch);
   void reference_error(const Epoch& epoch, const ReferenceError& error);

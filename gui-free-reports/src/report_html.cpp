@@ -121,6 +121,13 @@ std::string table(const Table& table) {
   return html + "</div>\n";
 }
 
+std::string tables(const std::vector<Table>& tables) {
+  if (tables.empty()) return {};
+  std::string html = "<div class=\"tables\">\n";
+  for (const Table& each : tables) html += table(each);
+  return html + "</div>\n";
+}
+
 std::string figure(const Figure& figure, int number) {
   return fmt::format(
       "<figure id=\"{0}\">\n<a href=\"{0}.png\"><img src=\"{0}.png\" alt=\"{1}\" width=\"{2:.0f}\" "
@@ -137,10 +144,9 @@ std::string section(const Section& section, size_t index, int& figure_number) {
   for (const std::string& text : section.paragraphs) {
     html += fmt::format("<p>{}</p>\n", escaped(text));
   }
-  if (!section.tables.empty()) html += "<div class=\"tables\">\n";
-  for (const Table& each : section.tables) html += table(each);
-  if (!section.tables.empty()) html += "</div>\n";
+  html += tables(section.tables);
   for (const Figure& each : section.figures) html += figure(each, ++figure_number);
+  html += tables(section.details);
   return html + "</section>\n";
 }
 

@@ -47,7 +47,9 @@ Json section_to_json(const Section& s) {
   Json json{{"title", s.title},
             {"paragraphs", s.paragraphs},
             {"tables", Json::array()},
-            {"figures", Json::array()}};
+            {"figures", Json::array()},
+            {"details", Json::array()}};
+  for (const Table& table : s.details) json["details"].push_back(table_to_json(table));
   for (const Table& table : s.tables) json["tables"].push_back(table_to_json(table));
   for (const Figure& figure : s.figures) json["figures"].push_back(figure.name);
   return json;
@@ -60,6 +62,9 @@ Section section_from_json(const Json& j, const std::string& folder) {
   for (const Json& table : j.at("tables")) s.tables.push_back(table_from_json(table));
   for (const Json& name : j.at("figures")) {
     s.figures.push_back(load_figure(folder, name.get<std::string>()));
+  }
+  for (const Json& table : j.value("details", Json::array())) {
+    s.details.push_back(table_from_json(table));
   }
   return s;
 }

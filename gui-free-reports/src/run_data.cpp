@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 #include "foucault/core/so3.h"
 #include "foucault/core/time.h"
@@ -10,12 +12,14 @@
 namespace foucault::reports {
 namespace {
 
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kDegrees = 180 / M_PI;
 constexpr double kDegreesPerHour = kDegrees * 3600;
 constexpr double kMilligal = 1e5;  // a m/s^2
 constexpr size_t kMostGaps = 64;
 constexpr size_t kMostNotices = 200;
 constexpr size_t kMostOutages = 1000;
+constexpr size_t kMostStretches = 1000;
 
 constexpr double kSemiMajorAxis = 6378137.0;       // WGS-84 [m]
 constexpr double kFlattening = 1 / 298.257223563;  // WGS-84
@@ -58,6 +62,48 @@ void Triad::add(double t, const Eigen::Vector3d& value, const Eigen::Vector3d& s
   if (t >= statistics_from) statistics.add(value, sigma);
 }
 
+void Stretches::begin(double t) {
+  if (!intervals_.empty()) {
+    const double pause = t - intervals_.back().end;
+    if (pause >= 0 && pause <= shortest_pause_) return extend(t);
+  }
+  intervals_.push_back({t, t});
+  if (intervals_.size() > kMostStretches) join_closest();
+}
+
+void Stretches::extend(double t) {
+  if (!intervals_.empty()) intervals_.back().end = std::max(intervals_.back().end, t);
+}
+
+std::vector<Interval> Stretches::intervals() const {
+  std::vector<Interval> sorted = intervals_;
+  std::sort(sorted.begin(), sorted.end(),
+            [](const Interval& a, const Interval& b) { return a.begin < b.begin; });
+  return sorted;
+}
+
+/// At least half of them.
+void Stretches::join_closest() {
+  intervals_ = intervals();
+  std::vector<double> pauses;
+  for (size_t i = 1; i < intervals_.size(); ++i) {
+    pauses.push_back(intervals_[i].begin - intervals_[i - 1].end);
+  }
+  std::vector<double> sorted = pauses;
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+  std::nth_element(sorted.begin(), middle, sorted.end());
+  shortest_pause_ = std::max(0.0, *middle);
+  std::vector<Interval> joined{intervals_.front()};
+  for (size_t i = 1; i < intervals_.size(); ++i) {
+    if (pauses[i - 1] <= shortest_pause_) {
+      joined.back().end = std::max(joined.back().end, intervals_[i].end);
+    } else {
+      joined.push_back(intervals_[i]);
+    }
+  }
+  intervals_ = std::move(joined);
+}
+
 std::optional<double> StepWatch::observe(double t) {
   last_was_gap_ = false;
   if (stamps_++ == 0) {
@@ -67,11 +113,15 @@ std::optional<double> StepWatch::observe(double t) {
   const double step = t - last_;
   recent_[(stamps_ - 2) % kMemory] = step;
   longest_ = std::max(longest_, step);
-  last_was_gap_ = step > std::max(least_gap_, 5 * median_step());
+  last_was_gap_ = step > longest_usual();
   if (last_was_gap_) keep_gap({last_, t});
   steps_.add(last_, {step});
   last_ = t;
   return step;
+}
+
+double StepWatch::longest_usual() const {
+  return stamps_ > 1 ? std::max(least_gap_, 5 * median_step()) : least_gap_;
 }
 
 double StepWatch::median_step() const {
@@ -134,6 +184,7 @@ void RunData::mark_gap() {
                        &velocity_error, &attitude_error}) {
     triad->rows.add_gap();
   }
+  for (DecimatedTable* nees : {&position_nees, &velocity_nees, &attitude_nees}) nees->add_gap();
 }
 
 void RunData::add(const Epoch& epoch) {
@@ -162,12 +213,14 @@ void RunData::add(const FixResult& fix) {
   const bool used = fix.verdict == FixVerdict::used;
   ++qualities[fix.quality];
   ++verdicts[fix.verdict];
+  watch_verdict(t, fix.verdict);
   fix_types.add(t, {static_cast<double>(fix.quality), used ? 0.0 : 1.0});
   const Eigen::Vector3d p = place(fix.antenna);
   const Eigen::Vector3d sigma = sigma_of(fix.innovation_covariance);
   if (used) {
     fix_steps.observe(t);
     if (fix_steps.last_was_gap()) {
+      nis.add_gap();
       innovation.rows.add_gap();
       postfit.rows.add_gap();
     }
@@ -177,6 +230,37 @@ void RunData::add(const FixResult& fix) {
   } else {
     rejected_places.add(t, {p.x(), p.y()});
     rejected_innovation.add(t, fix.innovation_n, sigma);
+  }
+}
+
+/// A stretch goes on as long as all fixes fare alike and none is missing.
+void RunData::watch_verdict(double t, FixVerdict verdict) {
+  const double step = t - last_fix_;
+  const bool goes_on =
+      last_verdict_ == verdict && step >= 0 && step <= all_fix_steps_.longest_usual();
+  Stretches& stretches = verdict_stretches[verdict];
+  if (goes_on) {
+    stretches.extend(t);
+  } else {
+    stretches.begin(t);
+  }
+  if (verdict != FixVerdict::out_of_order) all_fix_steps_.observe(t);
+  last_verdict_ = verdict;
+  last_fix_ = t;
+}
+
+void RunData::add(const NormalizedSquare& square) {
+  const double t = seconds(square.t_ns);
+  switch (square.kind) {
+    case NormalizedKind::innovation:
+      if (!square.used) return rejected_nis.add(t, {square.value});
+      return nis.add(t, {square.value, square.running_mean.value_or(kNaN)});
+    case NormalizedKind::position:
+      return position_nees.add(t, {square.value});
+    case NormalizedKind::velocity:
+      return velocity_nees.add(t, {square.value});
+    case NormalizedKind::attitude:
+      return attitude_nees.add(t, {square.value});
   }
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "foucault/core/consistency.h"
 #include "foucault/core/interfaces.h"
 #include "foucault/core/result.h"
 #include "foucault/reports/decimation.h"
@@ -46,6 +47,25 @@ struct Interval {
   double length() const { return end - begin; }
 };
 
+/// Stretches of time in which something went on, in bounded memory: if there are too many, those
+/// closest to each other are joined, and from then on all that come as close.
+class Stretches {
+ public:
+  void begin(double t);
+  /// The last one, if any, reaches at least to t.
+  void extend(double t);
+
+  bool empty() const { return intervals_.empty(); }
+  /// In order of their begins.
+  std::vector<Interval> intervals() const;
+
+ private:
+  void join_closest();
+
+  std::vector<Interval> intervals_;
+  double shortest_pause_ = -1;  ///< [s]; stretches closer than that are one
+};
+
 /// Watches the steps of a sequence of stamps: how long they are, and which are gaps, that is longer
 /// than `least_gap` and than five times the median of the last steps.
 class StepWatch {
@@ -56,7 +76,11 @@ class StepWatch {
   std::optional<double> observe(double t);
 
   bool last_was_gap() const { return last_was_gap_; }
+  /// A longer step would be a gap [s].
+  double longest_usual() const;
   size_t stamps() const { return stamps_; }
+  double first() const { return first_; }
+  double last() const { return last_; }
   size_t gaps() const { return gap_count_; }
   double longest() const { return longest_; }
   double duration() const { return stamps_ > 1 ? last_ - first_ : 0; }
@@ -109,6 +133,7 @@ class RunData {
   void add(const FixResult& fix);
   void add(const Notice& notice);
   void add(const Epoch& epoch, const ReferenceError& error);
+  void add(const NormalizedSquare& square);
   void add_imu_stamp(int64_t t_ns);
   void add_outage(int64_t begin_ns, int64_t end_ns);
 
@@ -130,8 +155,15 @@ class RunData {
   Triad rejected_innovation;          ///< as innovation
   Triad postfit;                      ///< used fixes; sigma not known
   DecimatedTable fix_types{2};        ///< quality, rejected (0 or 1)
+  DecimatedTable nis{2};              ///< used fixes: NIS, running mean
+  DecimatedTable rejected_nis{1};
+  DecimatedTable position_nees{1};
+  DecimatedTable velocity_nees{1};
+  DecimatedTable attitude_nees{1};
+  std::optional<Consistency> consistency;
   std::map<FixQuality, size_t> qualities;
   std::map<FixVerdict, size_t> verdicts;
+  std::map<FixVerdict, Stretches> verdict_stretches;
   StepWatch imu_steps{0.2};
   StepWatch fix_steps{4.0};  ///< between used fixes
   StepWatch epoch_steps{3.0};
@@ -148,12 +180,16 @@ class RunData {
   double seconds(int64_t t_ns);
   Eigen::Vector3d place(const Geodetic& geodetic);
   void mark_gap();
+  void watch_verdict(double t, FixVerdict verdict);
 
   Mounting mounting_;
   double statistics_from_;
   std::vector<Stretch> outages_;
   std::optional<int64_t> start_ns_;
   std::optional<StartPlane> plane_;
+  StepWatch all_fix_steps_{4.0};
+  std::optional<FixVerdict> last_verdict_;
+  double last_fix_ = 0;                 // [s], whatever became of it
   std::optional<double> last_heading_;  // [rad], continuous
 };
 

@@ -9,79 +9,14 @@
 #include "axis_scale.h"
 #include "foucault/reports/ticks.h"
 #include "map_unit.h"
+#include "run_panels.h"
 
 namespace foucault::reports {
 namespace {
 
-constexpr double kStackedHeight = 172;  // [mm], of three panels above each other
-
-using Names = std::array<const char*, 3>;
-constexpr Names kNed{"North", "East", "Down"};
 constexpr Names kEuler{"Roll", "Pitch", "Heading"};
 constexpr Names kXyz{"x axis", "y axis", "z axis"};
 constexpr std::array<Ink, 3> kAxisInks{Ink::blue, Ink::vermillion, Ink::green};
-
-Axis time_axis() {
-  Axis axis;
-  axis.label = "Time since start";
-  axis.unit = "s";
-  axis.kind = AxisKind::duration;
-  return axis;
-}
-
-Axis value_axis(const std::string& label, const std::string& unit) {
-  Axis axis;
-  axis.label = label;
-  axis.unit = unit;
-  return axis;
-}
-
-bool overlaps(const Interval& a, const std::vector<Interval>& others) {
-  return std::any_of(others.begin(), others.end(),
-                     [&](const Interval& b) { return a.begin < b.end && b.begin < a.end; });
-}
-
-/// Outages, and gaps that nobody asked for.
-std::vector<Shade> time_shades(const RunData& data) {
-  std::vector<Shade> shades;
-  const std::vector<Interval> outages = data.outages();
-  for (const Interval& outage : outages) {
-    shades.push_back({outage.begin, outage.end, "GNSS withheld", Ink::gray});
-  }
-  for (const Interval& gap : data.fix_steps.longest_gaps()) {
-    if (overlaps(gap, outages)) continue;
-    shades.push_back({gap.begin, gap.end, "no usable GNSS", Ink::orange});
-  }
-  for (const Interval& gap : data.imu_steps.longest_gaps()) {
-    shades.push_back({gap.begin, gap.end, "IMU gap", Ink::purple});
-  }
-  return shades;
-}
-
-Panel time_panel(const RunData& data, const Axis& y) {
-  Panel panel;
-  panel.x = time_axis();
-  panel.y = y;
-  panel.shades = time_shades(data);
-  return panel;
-}
-
-Series line(const std::string& label, Ink ink, std::vector<double> x, std::vector<double> y) {
-  Series series;
-  series.label = label;
-  series.ink = ink;
-  series.x = std::move(x);
-  series.y = std::move(y);
-  return series;
-}
-
-Series points(const std::string& label, Ink ink, double size, std::vector<double> x,
-              std::vector<double> y) {
-  Series series = line(label, ink, std::move(x), std::move(y));
-  series.mark = Mark::points;
-  series.size = size;
-  return series;
-}
 
 /// centre +- 3 sigma.
 Series bounds(const std::vector<double>& x, const std::vector<double>& centre,
@@ -124,16 +59,6 @@ void choose_length_unit(Figure& figure) {
   }
 }
 
-Figure stacked(const std::string& name, const std::string& title, const std::string& subtitle) {
-  Figure figure;
-  figure.name = name;
-  figure.title = title;
-  figure.subtitle = subtitle;
-  figure.height_mm = kStackedHeight;
-  figure.share_x = true;
-  return figure;
-}
-
 struct Quantity {
   std::string noun;  ///< of the columns, after the name of the axis
   std::string unit;
@@ -162,12 +87,6 @@ void add_estimate_panels(const RunData& data, const Triad& triad, const Quantity
 
 std::string with_unit(double value, const std::string& unit) {
   return significant_text(value) + (unit == "°" ? "" : " ") + unit;
-}
-
-/// ", from 60 s on", if anything is left out.
-std::string since(double statistics_from) {
-  if (statistics_from <= 0) return {};
-  return fmt::format(", from {} s on", significant_text(statistics_from));
 }
 
 std::string statistics_note(double rms, double inside, const std::string& unit, double factor) {
@@ -363,7 +282,7 @@ std::optional<Figure> ground_track(const RunData& data, const std::string& subti
 
 std::optional<Figure> position_figure(const RunData& data, const std::string& subtitle) {
   if (data.position.empty()) return std::nullopt;
-  Figure figure = stacked("position", "Position relative to the start", subtitle);
+  Figure figure = stacked_figure("position", "Position relative to the start", subtitle);
   figure.caption =
       "North, east and height of the IMU with 3-sigma bounds (see the uncertainty figure where "
       "they "
@@ -375,7 +294,7 @@ std::optional<Figure> position_figure(const RunData& data, const std::string& su
 
 std::optional<Figure> velocity_figure(const RunData& data, const std::string& subtitle) {
   if (data.velocity.empty()) return std::nullopt;
-  Figure figure = stacked("velocity", "Velocity", subtitle);
+  Figure figure = stacked_figure("velocity", "Velocity", subtitle);
   figure.caption =
       "Velocity in the local north-east-down with 3-sigma bounds. It should be smooth, and zero "
       "when the vehicle stands.";
@@ -385,7 +304,7 @@ std::optional<Figure> velocity_figure(const RunData& data, const std::string& su
 
 std::optional<Figure> attitude_figure(const RunData& data, const std::string& subtitle) {
   if (data.attitude.empty()) return std::nullopt;
-  Figure figure = stacked("attitude", "Attitude of the vehicle", subtitle);
+  Figure figure = stacked_figure("attitude", "Attitude of the vehicle", subtitle);
   figure.caption =
       "Roll, pitch and heading of the vehicle with 3-sigma bounds; the heading is drawn without "
       "jumps at 360°. Heading is learnt while the vehicle accelerates and turns, so its bounds "
@@ -413,7 +332,7 @@ Panel sigma_panel(const RunData& data, const Triad& triad, const std::string& la
 
 std::optional<Figure> uncertainty_figure(const RunData& data, const std::string& subtitle) {
   if (data.position.empty()) return std::nullopt;
-  Figure figure = stacked("uncertainty", "Estimated uncertainty (1σ)", subtitle);
+  Figure figure = stacked_figure("uncertainty", "Estimated uncertainty (1σ)", subtitle);
   figure.height_mm = 200;
   figure.caption =
       "Standard deviations the estimator gives itself, on logarithmic axes. They grow without GNSS "
@@ -431,7 +350,8 @@ std::optional<Figure> uncertainty_figure(const RunData& data, const std::string&
 
 std::optional<Figure> position_error_figure(const RunData& data, const std::string& subtitle) {
   if (data.position_error.empty()) return std::nullopt;
-  Figure figure = stacked("position_error", "Position error against the reference", subtitle);
+  Figure figure =
+      stacked_figure("position_error", "Position error against the reference", subtitle);
   figure.caption =
       "Estimate minus reference. If the estimator knows its own accuracy, 99.7 % of the errors lie "
       "within the bounds; bounds that are never touched are too wide.";
@@ -440,14 +360,16 @@ std::optional<Figure> position_error_figure(const RunData& data, const std::stri
 
 std::optional<Figure> velocity_error_figure(const RunData& data, const std::string& subtitle) {
   if (data.velocity_error.empty()) return std::nullopt;
-  Figure figure = stacked("velocity_error", "Velocity error against the reference", subtitle);
+  Figure figure =
+      stacked_figure("velocity_error", "Velocity error against the reference", subtitle);
   figure.caption = "Estimate minus reference, local north-east-down, with 3-sigma bounds.";
   return error_figure(data, data.velocity_error, {"error", "m/s", kNed}, std::move(figure));
 }
 
 std::optional<Figure> attitude_error_figure(const RunData& data, const std::string& subtitle) {
   if (data.attitude_error.empty()) return std::nullopt;
-  Figure figure = stacked("attitude_error", "Attitude error against the reference", subtitle);
+  Figure figure =
+      stacked_figure("attitude_error", "Attitude error against the reference", subtitle);
   figure.caption =
       "Estimate minus reference, vehicle axes, with 3-sigma bounds. Roll and pitch settle within "
       "seconds, the heading as the vehicle manoeuvres; a constant offset points at a mounting "
@@ -457,7 +379,7 @@ std::optional<Figure> attitude_error_figure(const RunData& data, const std::stri
 
 std::optional<Figure> gyro_bias_figure(const RunData& data, const std::string& subtitle) {
   if (data.gyro_bias.empty()) return std::nullopt;
-  Figure figure = stacked("gyro_bias", "Gyroscope bias", subtitle);
+  Figure figure = stacked_figure("gyro_bias", "Gyroscope bias", subtitle);
   figure.caption =
       "Bias on the axes of the IMU with 3-sigma bounds. After the first manoeuvres it should move "
       "slowly, within the bounds it had before. Bounds wider than the axes are cut.";
@@ -467,7 +389,7 @@ std::optional<Figure> gyro_bias_figure(const RunData& data, const std::string& s
 
 std::optional<Figure> accel_bias_figure(const RunData& data, const std::string& subtitle) {
   if (data.accel_bias.empty()) return std::nullopt;
-  Figure figure = stacked("accel_bias", "Accelerometer bias", subtitle);
+  Figure figure = stacked_figure("accel_bias", "Accelerometer bias", subtitle);
   figure.caption =
       "Bias on the axes of the IMU with 3-sigma bounds (1 mGal = 10⁻⁵ m/s²). The horizontal axes "
       "are told from tilt only while the vehicle turns.";
@@ -507,7 +429,7 @@ Panel innovation_panel(const RunData& data, const DecimatedTable::Rows& used,
 
 std::optional<Figure> innovation_figure(const RunData& data, const std::string& subtitle) {
   if (data.innovation.empty() && data.rejected_innovation.empty()) return std::nullopt;
-  Figure figure = stacked("gnss_innovations", "GNSS innovations", subtitle);
+  Figure figure = stacked_figure("gnss_innovations", "GNSS innovations", subtitle);
   figure.caption =
       "Fix minus its prediction, before it is used, with the 3-sigma bounds of the prediction and "
       "the fix together. Good innovations are centred, have no pattern in time and stay within the "
@@ -524,7 +446,7 @@ std::optional<Figure> innovation_figure(const RunData& data, const std::string& 
 
 std::optional<Figure> postfit_figure(const RunData& data, const std::string& subtitle) {
   if (data.postfit.empty()) return std::nullopt;
-  Figure figure = stacked("gnss_residuals", "GNSS residuals after use", subtitle);
+  Figure figure = stacked_figure("gnss_residuals", "GNSS residuals after use", subtitle);
   figure.caption =
       "Fix minus the estimate that has used it. They are smaller than the innovations; steps or "
       "slopes mean that fixes and IMU disagree (lever arm, time offset, a biased fix).";
@@ -609,7 +531,7 @@ Panel type_panel(const RunData& data) {
 }  // namespace
 
 std::optional<Figure> data_health_figure(const RunData& data, const std::string& subtitle) {
-  Figure figure = stacked("data_health", "Data health", subtitle);
+  Figure figure = stacked_figure("data_health", "Data health", subtitle);
   figure.caption =
       "Time between IMU samples, time between GNSS fixes that were used, and fix types over time. "
       "Healthy intervals lie on one level; every gap stands out above it.";

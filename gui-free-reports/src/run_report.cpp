@@ -4,10 +4,12 @@
 
 #include <ctime>
 
+#include "consistency_section.h"
 #include "foucault/core/time.h"
 #include "foucault/reports/ticks.h"
 #include "run_data.h"
 #include "run_figures.h"
+#include "timeline_section.h"
 
 namespace foucault::reports {
 namespace {
@@ -20,38 +22,6 @@ std::string utc_text(int64_t t_ns) {
   gmtime_r(&seconds, &utc);
   return fmt::format("{:04}-{:02}-{:02} {:02}:{:02}:{:02} UTC", utc.tm_year + 1900, utc.tm_mon + 1,
                      utc.tm_mday, utc.tm_hour, utc.tm_min, utc.tm_sec);
-}
-
-std::string notice_name(NoticeKind kind) {
-  switch (kind) {
-    case NoticeKind::aligned:
-      return "aligned";
-    case NoticeKind::imu_gap:
-      return "IMU gap";
-    case NoticeKind::realigned:
-      return "aligned again";
-    case NoticeKind::fix_rejected:
-      return "fix rejected";
-    case NoticeKind::skipped:
-      return "skipped";
-  }
-  return {};
-}
-
-std::string verdict_name(FixVerdict verdict) {
-  switch (verdict) {
-    case FixVerdict::used:
-      return "used";
-    case FixVerdict::bad_sigma:
-      return "rejected: bad sigma";
-    case FixVerdict::gated:
-      return "rejected: too far from the prediction";
-    case FixVerdict::low_quality:
-      return "rejected: quality too low";
-    case FixVerdict::out_of_order:
-      return "rejected: out of order";
-  }
-  return {};
 }
 
 std::string joined_by_dots(const std::vector<std::string>& parts) {
@@ -103,27 +73,12 @@ Table sampling_table(const RunData& data) {
   return table;
 }
 
-Table notice_table(const RunData& data, int64_t start_ns) {
-  Table table;
-  table.title = "What happened on the way";
-  table.of_words = true;
-  table.header = {"Time since start", "Event", "Detail"};
-  for (const Notice& notice : data.notices) {
-    table.rows.push_back({number_text(seconds_between(start_ns, notice.t_ns), 2) + " s",
-                          notice_name(notice.kind), notice.text});
-  }
-  if (data.notices_seen > data.notices.size()) {
-    table.note = fmt::format("{} more.", data.notices_seen - data.notices.size());
-  }
-  return table;
-}
-
 void add_if(const std::optional<Figure>& figure, Section& section) {
   if (figure) section.figures.push_back(*figure);
 }
 
 bool has_content(const Section& section) {
-  return !section.tables.empty() || !section.figures.empty();
+  return !section.tables.empty() || !section.figures.empty() || !section.details.empty();
 }
 
 }  // namespace
@@ -177,10 +132,9 @@ class RunReport::Collector {
   }
 
   Section health() const {
-    Section section{"Data health", {}, {sampling_table(data)}, {}};
-    if (section.tables.front().rows.empty()) section.tables.clear();
-    if (!data.notices.empty())
-      section.tables.push_back(notice_table(data, data.start_ns().value_or(0)));
+    Section section{"Data health", {}, {}, {}};
+    const Table sampling = sampling_table(data);
+    if (!sampling.rows.empty()) section.tables.push_back(sampling);
     add_if(data_health_figure(data, subtitle()), section);
     return section;
   }
@@ -190,7 +144,9 @@ class RunReport::Collector {
     page.title = "Navigation report";
     page.subtitle = subtitle();
     page.key_numbers = key_numbers;
-    for (const Section& section : {overview(), errors(), gnss(), solution(), biases(), health()}) {
+    for (const Section& section :
+         {overview(), timeline_section(data, subtitle()), errors(),
+          consistency_section(data, subtitle()), gnss(), solution(), biases(), health()}) {
       if (has_content(section)) page.sections.push_back(section);
     }
     if (!labels.command.empty()) page.listings.push_back({"Command", labels.command});
@@ -218,6 +174,12 @@ void RunReport::notice(const Notice& notice) { collector_->data.add(notice); }
 
 void RunReport::reference_error(const Epoch& epoch, const ReferenceError& error) {
   collector_->data.add(epoch, error);
+}
+
+void RunReport::normalized_square(const NormalizedSquare& square) { collector_->data.add(square); }
+
+void RunReport::consistency(const Consistency& consistency) {
+  collector_->data.consistency = consistency;
 }
 
 void RunReport::imu_stamp(int64_t t_ns) { collector_->data.add_imu_stamp(t_ns); }

@@ -28,6 +28,7 @@ class DemoDriver {
         {stamp(2), NoticeKind::aligned, "heading 61.3° ± 0.8° from the course over ground"});
     if (run_.with_outage) report.outage(stamp(kOutage), stamp(kOutage + 60));
     for (int i = 0; i * kStep < run_.duration; ++i) step(i, report);
+    report.consistency(consistency());
   }
 
  private:
@@ -102,6 +103,46 @@ class DemoDriver {
     return e;
   }
 
+  static NormalizedSquare square(NormalizedKind kind, int64_t t_ns, double value) {
+    NormalizedSquare s;
+    s.t_ns = t_ns;
+    s.kind = kind;
+    s.value = value;
+    return s;
+  }
+
+  static void add_fix(const FixResult& fix, RunReport& report) {
+    report.fix(fix);
+    const double variance = fix.innovation_covariance(0, 0);
+    NormalizedSquare nis =
+        square(NormalizedKind::innovation, fix.t_ns, fix.innovation_n.squaredNorm() / variance);
+    nis.used = fix.verdict == FixVerdict::used;
+    if (nis.used) nis.running_mean = 2.7;
+    report.normalized_square(nis);
+  }
+
+  /// What a perfect filter has.
+  Consistency consistency() const {
+    Consistency c;
+    c.single_band = {0.2158, 9.3484};
+    c.running_mean_band = {2.19, 3.94};
+    c.nis = {2000, 1500, 3.02, {2.88, 3.12}, 0.951};
+    for (ResidualStatistics& s : c.innovations) {
+      s = {2000, 0, 1, 0.0, {0.683, 0.954, 0.997}, {}};
+      for (std::size_t i = 0; i < ResidualHistogram::kBins; ++i) {
+        const double z =
+            (static_cast<double>(i) + 0.5) * ResidualHistogram::kWidth - ResidualHistogram::kLimit;
+        s.histogram.counts[i] = std::lround(2000 * ResidualHistogram::kWidth *
+                                            std::exp(-z * z / 2) / std::sqrt(2 * M_PI));
+      }
+    }
+    c.autocorrelation = {2000, kStep, 0.044, {}, 0.05};
+    for (int k = 0; k < 40; ++k)
+      c.autocorrelation.lag.push_back({0.03, -0.02, k == 3 ? 0.06 : 0.01});
+    if (run_.with_reference) c.position_nees = SquareConsistency{2400, 120, 3.2, {2.6, 3.5}, 0.93};
+    return c;
+  }
+
   void step(int i, RunReport& report) {
     const double t = i * kStep;
     move(t);
@@ -109,10 +150,14 @@ class DemoDriver {
       const double imu_t = t + 0.01 * k + 4e-4 * normal_(rng_);
       if (imu_t < 430 || imu_t > 430.8) report.imu_stamp(stamp(imu_t));
     }
-    if (!in_outage(t)) report.fix(fix(t));
+    if (!in_outage(t)) add_fix(fix(t), report);
     const Epoch now = epoch(t);
     report.epoch(now);
-    if (run_.with_reference) report.reference_error(now, error(t));
+    if (!run_.with_reference) return;
+    const ReferenceError now_error = error(t);
+    report.reference_error(now, now_error);
+    report.normalized_square(square(NormalizedKind::position, now_error.t_ns,
+                                    now_error.position_n.squaredNorm() / std::pow(sigma(t), 2)));
   }
 
   DemoRun run_;

@@ -51,6 +51,7 @@ ReportPage small_page() {
   section.paragraphs = {"Text."};
   section.tables = {{"Table", "note", false, {"a", "b"}, {{"x", "1"}, {"y", "2"}}}};
   section.figures = {small_figure("one"), small_figure("two")};
+  section.details = {{"Details", "", true, {"when", "what"}, {{"1 s", "it"}}}};
   page.sections = {section};
   page.listings = {{"Configuration", "imu: {preset: X}"}};
   page.footer = "foucault 0";

@@ -61,7 +61,8 @@ TEST(RunReport, ShowsEverythingThatWasGiven) {
       figure_names(page),
       (std::set<std::string>{"ground_track", "position", "velocity", "attitude", "uncertainty",
                              "position_error", "velocity_error", "attitude_error", "gyro_bias",
-                             "accel_bias", "gnss_innovations", "gnss_residuals", "data_health"}));
+                             "accel_bias", "gnss_innovations", "gnss_residuals", "data_health",
+                             "timeline", "nis", "innovation_whiteness", "nees"}));
   EXPECT_EQ(page.key_numbers.size(), 4U);
   EXPECT_EQ(page.listings.size(), 2U) << "command and configuration";
   EXPECT_NE(page.subtitle.find("trip.rawlog"), std::string::npos);
@@ -70,6 +71,8 @@ TEST(RunReport, ShowsEverythingThatWasGiven) {
 
 TEST(RunReport, ShowsNoErrorsWithoutReference) {
   const std::set<std::string> names = figure_names(demo_page({60, false, false}));
+  EXPECT_EQ(names.count("nees"), 0U);
+  EXPECT_EQ(names.count("nis"), 1U);
   EXPECT_EQ(names.count("position_error"), 0U);
   EXPECT_EQ(names.count("position"), 1U);
 }
@@ -191,6 +194,121 @@ TEST(RunReport, StatisticsLeaveOutTheSettlingTime) {
   EXPECT_NE(note.find("from 50.0 s on"), std::string::npos) << note;
 }
 
+const Section& section_of(const ReportPage& page, const std::string& title) {
+  for (const Section& section : page.sections) {
+    if (section.title == title) return section;
+  }
+  throw std::runtime_error("no section " + title);
+}
+
+TEST(Consistency, FigureHasBoundsAndTellsRejectedFixes) {
+  const ReportPage page = demo_page({600, true, true});
+  const Panel& nis = figure_of(page, "nis").panels.at(0);
+  EXPECT_EQ(nis.y.kind, AxisKind::log);
+  EXPECT_EQ(series_of(nis, "rejected").x.size(), 39U);
+  EXPECT_EQ(series_of(nis, "95 % for one fix").y, (std::vector<double>{0.2158, 0.2158}));
+  EXPECT_EQ(series_of(nis, "95 % for the mean of 30").upper, (std::vector<double>{3.94, 3.94}));
+  EXPECT_EQ(figure_of(page, "nees").panels.size(), 1U) << "of the position alone";
+}
+
+TEST(Consistency, HistogramIsADensity) {
+  const ReportPage page = demo_page({60, false, false});
+  const Figure& figure = figure_of(page, "innovation_whiteness");
+  ASSERT_EQ(figure.panels.size(), 6U);
+  const Series& bins = series_of(figure.panels[1], "whitened innovations");
+  double area = 0;
+  for (size_t i = 0; i + 1 < bins.x.size(); i += 2) {
+    EXPECT_EQ(bins.upper[i], bins.upper[i + 1]);
+    area += bins.upper[i] * (bins.x[i + 1] - bins.x[i]);
+  }
+  EXPECT_NEAR(area, 1, 1e-3);  // counts of the demo are rounded
+  EXPECT_NE(figure.panels[5].note.find("2.5 % outside"), std::string::npos)
+      << figure.panels[5].note;  // one lag of 40
+}
+
+TEST(Consistency, WordsFollowTheNumbers) {
+  const auto words = [](double mean, double kurtosis, double outside) {
+    RunReport report(kLabels, Mounting{});
+    Consistency c;
+    c.nis = {100, 50, mean, {2.3, 3.7}, 0.95};
+    c.innovations[2].excess_kurtosis = kurtosis;
+    c.autocorrelation.lag.resize(20);
+    c.autocorrelation.outside_share = outside;
+    report.consistency(c);
+    return section_of(report.page(), "Consistency").paragraphs.at(0);
+  };
+  EXPECT_NE(words(3, 0, 0.05).find("within the band"), std::string::npos);
+  EXPECT_NE(words(3, 0, 0.05).find("they are white"), std::string::npos);
+  EXPECT_EQ(words(3, 0, 0.05).find("tails"), std::string::npos);
+  EXPECT_NE(words(3.8, 4, 0.05).find("above the band"), std::string::npos);
+  EXPECT_NE(words(3.8, 4, 0.05).find("tails are heavier"), std::string::npos);
+  EXPECT_NE(words(2.2, 0, 0.2).find("below the band"), std::string::npos);
+  EXPECT_NE(words(2.2, 0, 0.2).find("coloured"), std::string::npos);
+}
+
+TEST(Timeline, IsCalmWhenNothingHappens) {
+  RunReport report(kLabels, Mounting{});
+  for (int t = 0; t < 50; ++t) {
+    report.imu_stamp(nanoseconds(t));
+    FixResult fix;
+    fix.t_ns = nanoseconds(t);
+    report.fix(fix);
+  }
+  report.notice({nanoseconds(1), NoticeKind::aligned, "aligned"});
+  const ReportPage page = report.page();
+  EXPECT_EQ(section_of(page, "Timeline").paragraphs.at(0).rfind("Nothing happened", 0), 0U);
+  const Panel& panel = figure_of(page, "timeline").panels.at(0);
+  EXPECT_EQ(panel.y.categories, (std::vector<std::string>{"events", "fixes used (50)", "IMU"}));
+  for (const Series& series : panel.series) EXPECT_NE(series.ink, Ink::vermillion);
+}
+
+TEST(Timeline, ShowsStretchesHolesAndEvents) {
+  const ReportPage page = demo_page({600, false, true});
+  const Panel& panel = figure_of(page, "timeline").panels.at(0);
+  EXPECT_EQ(panel.y.categories,
+            (std::vector<std::string>{"events", "gated (39)", "fixes used (2122)", "IMU"}));
+  const auto bars = [&panel](const std::string& column) {
+    for (const Series& series : panel.series) {
+      if (series.column == column) return series;
+    }
+    throw std::runtime_error("no column " + column);
+  };
+  // 39 fixes every 0.25 s after 480 s are one bar: begin, end, gap.
+  const std::vector<double> gated = bars("gated").x;
+  ASSERT_EQ(gated.size(), 3U);
+  EXPECT_NEAR(gated[0], 480.25, 0.01);
+  EXPECT_NEAR(gated[1], 489.75, 0.01);
+  EXPECT_EQ(bars("used").x.size(), 9U) << "before the outage, after it, after the rejected ones";
+  const Series imu = bars("IMU");
+  ASSERT_EQ(imu.x.size(), 6U);
+  EXPECT_NEAR(imu.x[1], 430, 0.02);
+  EXPECT_NEAR(imu.x[3], 430.8, 0.02);
+  EXPECT_EQ(series_of(panel, "aligned").x.size(), 1U);
+  const Section& section = section_of(page, "Timeline");
+  EXPECT_NE(section.paragraphs.at(0).find("39 of 2161 fixes rejected (39 gated)"),
+            std::string::npos)
+      << section.paragraphs.at(0);
+  EXPECT_NE(section.paragraphs.at(0).find("in 1 hole"), std::string::npos);
+  EXPECT_EQ(section.details.at(0).rows.size(), 1U);
+}
+
+TEST(Timeline, TakesBoundedRoom) {
+  RunReport report(kLabels, Mounting{});
+  for (int i = 0; i < 30'000; ++i) {
+    FixResult fix;
+    fix.t_ns = nanoseconds(0.1 * i);
+    fix.verdict = i % 5 == 0 ? FixVerdict::gated : FixVerdict::used;
+    report.fix(fix);
+  }
+  const ReportPage page = report.page();
+  const Panel& panel = figure_of(page, "timeline").panels.at(0);
+  EXPECT_EQ(panel.y.categories.front(), "gated (6000)");
+  for (const Series& series : panel.series) {
+    EXPECT_LE(series.x.size(), 3000U);
+    EXPECT_GT(*std::max_element(series.x.begin(), series.x.end()), 2900) << "to the end";
+  }
+}
+
 TEST(RunReport, LongRunsTakeBoundedRoom) {
   RunReport report(kLabels, Mounting{});
   for (int i = 0; i < 60000; ++i) {
@@ -240,7 +358,7 @@ TEST(RunReport, WritesAWholeFolderThatRedrawsToTheSameBytes) {
   };
   const std::string html = content("index.html");
   EXPECT_EQ(html.find("://"), std::string::npos);
-  EXPECT_NE(html.find("Figure 13."), std::string::npos);
+  EXPECT_NE(html.find("Figure 17."), std::string::npos);
   const std::string header = content("position_error.csv").substr(0, 200);
   EXPECT_EQ(header.rfind("time_since_start_s,north_error_3_sigma_lower_m,"
                          "north_error_3_sigma_upper_m,north_error_m,",

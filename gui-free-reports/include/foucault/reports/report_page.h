@@ -26,12 +26,13 @@ struct Table {
   std::vector<std::vector<std::string>> rows;  ///< the first cell of a row names it
 };
 
-/// A heading with what stands under it, in this order: paragraphs, tables, figures.
+/// A heading with what stands under it, in this order: paragraphs, tables, figures, details.
 struct Section {
   std::string title;
   std::vector<std::string> paragraphs;
   std::vector<Table> tables;
   std::vector<Figure> figures;
+  std::vector<Table> details = {};  ///< tables to look things up in
 };
 
 /// Long plain text, e.g. the configuration; folded on screen, open in print.

@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 
+#include "foucault/core/consistency.h"
 #include "foucault/core/interfaces.h"
 #include "foucault/core/result.h"
 #include "foucault/reports/report_page.h"
@@ -22,8 +23,9 @@ struct RunLabels {
   double statistics_from_s = 0;
 };
 
-/// Collects a run in bounded memory and writes its report: ground track, position, velocity,
-/// attitude, uncertainty, biases, errors where there is a reference, GNSS innovations, data health.
+/// Collects a run in bounded memory and writes its report: ground track, timeline of faults,
+/// errors where there is a reference, consistency, GNSS innovations, position, velocity, attitude,
+/// uncertainty, biases, data health.
 /// Calls come in order of stamps within each kind; kinds may interleave in any way.
 class RunReport : public Sink {
  public:
@@ -35,6 +37,12 @@ class RunReport : public Sink {
   void notice(const Notice& notice) override;
   /// `epoch` is the one the error belongs to; its covariance gives the bounds.
   void reference_error(const Epoch& epoch, const ReferenceError& error);
+
+  /// Drawn over time if there is a consistency().
+  void normalized_square(const NormalizedSquare& square);
+
+  /// What the normalized squares and innovations of the whole run amount to.
+  void consistency(const Consistency& consistency);
 
   /// End of an IMU sample's interval, for the sampling statistics.
   void imu_stamp(int64_t t_ns);
