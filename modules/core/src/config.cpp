@@ -25,6 +25,12 @@ std::string joined(std::string_view prefix, std::string_view key) {
   return prefix.empty() ? std::string(key) : fmt::format("{}.{}", prefix, key);
 }
 
+/// Short enough for a message.
+std::string shortened(const std::string& text) {
+  constexpr std::size_t kLongest = 60;
+  return text.size() > kLongest ? text.substr(0, kLongest - 3) + "..." : text;
+}
+
 /// Messages are one line, whatever the input that they quote holds.
 [[noreturn]] void refuse(std::string message) {
   for (char& c : message) {
@@ -32,6 +38,31 @@ std::string joined(std::string_view prefix, std::string_view key) {
     if (code < 0x20 || code == 0x7F) c = ' ';
   }
   throw UsageError(message);
+}
+
+/// How many bytes of UTF-8 the character at the front takes; 0 if it is none.
+std::size_t utf8_length(std::string_view text) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  const unsigned char first = byte(0);
+  if (first < 0x80) return 1;
+  const std::size_t length = first < 0xC2 ? 0 : first < 0xE0 ? 2 : first < 0xF0 ? 3 : 4;
+  if (length == 0 || first > 0xF4 || text.size() < length) return 0;
+  for (std::size_t i = 1; i < length; ++i) {
+    if ((byte(i) & 0xC0) != 0x80) return 0;
+  }
+  const bool overlong = (first == 0xE0 && byte(1) < 0xA0) || (first == 0xF0 && byte(1) < 0x90);
+  const bool surrogate = first == 0xED && byte(1) > 0x9F;
+  const bool beyond_unicode = first == 0xF4 && byte(1) > 0x8F;
+  return overlong || surrogate || beyond_unicode ? 0 : length;
+}
+
+bool is_utf8(std::string_view text) {
+  while (!text.empty()) {
+    const std::size_t length = utf8_length(text);
+    if (length == 0) return false;
+    text.remove_prefix(length);
+  }
+  return true;
 }
 
 /// Levenshtein's distance.
@@ -54,15 +85,20 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 std::string_view leaf(std::string_view key) { return key.substr(key.rfind('.') + 1); }
 
 /// The nearest of `valid`: a key of the same name in another section comes before a similar one.
+/// Of a key longer than any of ours the beginning decides, whatever has been taken for a key.
 std::string nearest(std::string_view key, const std::vector<std::string>& valid) {
-  const auto cost = [&](const std::string& candidate) {
-    return leaf(candidate) == leaf(key) ? 0 : edit_distance(candidate, key);
-  };
-  const auto best = std::min_element(valid.begin(), valid.end(), [&](const auto& a, const auto& b) {
-    return std::make_pair(cost(a), edit_distance(a, key)) <
-           std::make_pair(cost(b), edit_distance(b, key));
-  });
-  return best == valid.end() ? std::string() : *best;
+  constexpr std::size_t kLongest = 100;
+  const std::string_view begin = key.substr(0, kLongest);
+  const std::string* best = nullptr;
+  std::pair<bool, std::size_t> least;
+  for (const std::string& candidate : valid) {
+    const std::pair<bool, std::size_t> cost{leaf(candidate) != leaf(key),
+                                            edit_distance(candidate, begin)};
+    if (best != nullptr && cost >= least) continue;
+    best = &candidate;
+    least = cost;
+  }
+  return best == nullptr ? std::string() : *best;
 }
 
 /// Collects the dotted names of all keys and sections.
@@ -122,7 +158,8 @@ struct Input {
     const YAML::Mark mark = node.Mark();
     const std::string place =
         has_lines && !mark.is_null() ? fmt::format("{}:{}", origin, mark.line + 1) : origin;
-    const std::string name = key.empty() ? std::string() : fmt::format("{}: ", key);
+    const std::string name =
+        key.empty() ? std::string() : fmt::format("{}: ", shortened(std::string(key)));
     refuse(fmt::format("{}: {}{}", place, name, what));
   }
 };
@@ -132,8 +169,7 @@ std::string shown(const YAML::Node& node) {
   if (node.IsNull()) return "nothing";
   if (node.IsMap()) return "a map";
   if (node.IsSequence()) return "a list";
-  const std::string text = node.Scalar();
-  return fmt::format("'{}'", text.size() > 60 ? text.substr(0, 57) + "..." : text);
+  return fmt::format("'{}'", shortened(node.Scalar()));
 }
 
 std::string range_text(Range range) {
@@ -304,6 +340,7 @@ class Reader : public ConfigFields {
     if (!key.IsScalar()) {
       input_.fail(key, prefix_, fmt::format("a key must be a name, got {}", shown(key)));
     }
+    check_utf8(key, prefix_);
     for (const Entry& entry : entries_) {
       if (entry.key == key.Scalar()) {
         fail(key, entry.key,
@@ -360,12 +397,18 @@ class Reader : public ConfigFields {
 
   void check_range(const YAML::Node& node, std::string_view key, double value, Range range) const {
     if (value >= range.min && value <= range.max) return;
-    fail(node, key, fmt::format("must be {}, is {}", range_text(range), node.Scalar()));
+    fail(node, key, fmt::format("must be {}, is {}", range_text(range), shortened(node.Scalar())));
   }
 
   std::string checked_text(const YAML::Node& node, std::string_view key) const {
     if (!node.IsScalar()) fail_type(node, key, "a text");
+    check_utf8(node, dotted(key));
     return node.Scalar();
+  }
+
+  /// Other bytes would be written as something else, and not be the same when read again.
+  void check_utf8(const YAML::Node& node, std::string_view name) const {
+    if (!is_utf8(node.Scalar())) input_.fail(node, name, "is not UTF-8; save it in that encoding");
   }
 
   const Input& input_;

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cstdio>
 #include <cstring>
 #include <fstream>
@@ -253,6 +254,15 @@ TEST(Config, UnknownKeyNamesPlaceAndNearest) {
   EXPECT_EQ(load_error("fog: {window_s: 3}"), "trip.yaml:1: fog: is not a key; did you mean fgo?");
 }
 
+/// A file that is no configuration at all: an answer at once, and of a length that can be read.
+TEST(Config, UnknownKeyOfAMegabyte) {
+  const auto begin = std::chrono::steady_clock::now();
+  const std::string error = load_error("fgo:\n  ? " + std::string(1 << 20, 'w') + "\n  : 3\n");
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(5));
+  EXPECT_LT(error.size(), 200u) << error.substr(0, 200);
+  EXPECT_EQ(error.rfind("trip.yaml:2: fgo.www", 0), 0u) << error.substr(0, 200);
+}
+
 TEST(Config, DuplicateKey) {
   EXPECT_EQ(load_error("fgo:\n  window_s: 3\n  robust: none\n  window_s: 3\n"),
             "trip.yaml:4: fgo.window_s: is given twice, first in line 2; remove one");
@@ -396,6 +406,17 @@ TEST(Config, MessagesAreOneLineWhateverTheyQuote) {
   } catch (const UsageError& error) {
     EXPECT_STREQ(error.what(), "a.yaml:1: jobs: expects a whole number, got the text 'a b '");
   }
+}
+
+/// A dump writes what is no character of Unicode as U+FFFD: it would not read as what it was.
+TEST(Config, TextsAreUtf8) {
+  EXPECT_THAT(load_error("label: d\xe4ten.csv"), StartsWith("trip.yaml:1: label: is not UTF-8"));
+  EXPECT_THAT(load_error("columns: {\xe1: 1, \xe0\xa5: two}"), HasSubstr("is not UTF-8"));
+  for (const char* wrong : {"\x80", "\xc0\xaf", "\xe0\x80\xaf", "\xed\xa0\x80", "\xf4\x90\x80\x80",
+                            "\xf5\x80\x80\x80", "\xe2\x82", "\xff"}) {
+    EXPECT_THAT(load_error(std::string("label: \"") + wrong + "\""), HasSubstr("UTF-8"));
+  }
+  EXPECT_EQ(load_error("label: \"d\xc3\xa4ten \xe2\x82\xac \xf0\x9f\x9a\x97\""), "no error");
 }
 
 TEST(Config, DumpIsReadable) {
