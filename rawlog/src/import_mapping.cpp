@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cctype>
+
 #include "foucault/core/error.h"
 #include "foucault/core/so3.h"
 
@@ -14,6 +17,15 @@ const std::vector<std::string> kHeights{"ellipsoidal", "msl"};
 constexpr Range kAnyNumber{};
 constexpr Range kSeconds{-1e9, 1e9};  // some thirty years
 
+/// For a message, which is one line.
+std::string quoted(std::string text) {
+  constexpr size_t kLongest = 20;
+  if (text.size() > kLongest) text = text.substr(0, kLongest - 3) + "...";
+  std::replace_if(
+      text.begin(), text.end(), [](unsigned char c) { return std::iscntrl(c) != 0; }, ' ');
+  return "'" + text + "'";
+}
+
 /// "x", "+y", "-z" as a unit vector of the sensor.
 Eigen::RowVector3d axis(const std::string& name) {
   const bool negative = !name.empty() && name.front() == '-';
@@ -21,9 +33,8 @@ Eigen::RowVector3d axis(const std::string& name) {
   const std::string letter = name.substr(has_sign ? 1 : 0);
   if (letter != "x" && letter != "y" && letter != "z") {
     throw UsageError(
-        fmt::format("imu.axes: '{}' is no axis; write x, y or z, with - if it looks "
-                    "the other way",
-                    name));
+        fmt::format("imu.axes: {} is no axis; write x, y or z, with - if it looks the other way",
+                    quoted(name)));
   }
   return (negative ? -1.0 : 1.0) * Eigen::RowVector3d::Unit(letter[0] - 'x');
 }
