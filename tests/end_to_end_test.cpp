@@ -232,15 +232,5 @@ TEST(Demo, LeavesRecordingsASolutionTheTablesAndTheirReports) {
   EXPECT_EQ(foucault({"info", folder / "demo/recordings/ADIS16465-1617s.rawlog"}).exit_code, 0);
 }
 
-/// Ten hours take the simulator much longer than it takes to send a signal.
-TEST(Interrupt, LeavesNothingBehind) {
-  const TestFolder folder;
-  const Outcome stopped =
-      foucault_interrupted({"simulate", "--duration", "36000", "--out", folder / "long.rawlog"},
-                           [&folder] { return folder.entries() > 0; });
-  EXPECT_EQ(stopped.exit_code, 130) << stopped.err;
-  EXPECT_EQ(folder.entries(), 0u);
-}
-
 }  // namespace
 }  // namespace foucault::test

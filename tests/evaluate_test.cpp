@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <csignal>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -130,8 +131,8 @@ TEST_F(Tune, GoesOnAfterItWasStopped) {
   const auto half_done = [&] {
     return fs::exists(points) && folder_.lines("parts/points.csv").size() > 12;
   };
-  const Outcome stopped = foucault_interrupted(tune("parts"), half_done);
-  EXPECT_EQ(stopped.exit_code, 130) << stopped.err;
+  const Outcome stopped = foucault_interrupted(tune("parts"), half_done, SIGTERM);
+  EXPECT_EQ(stopped.exit_code, 143) << stopped.err;
   EXPECT_THAT(stopped.err, HasSubstr("points are kept"));
   EXPECT_FALSE(fs::exists(folder_.path() / "parts/best.yaml"));
 

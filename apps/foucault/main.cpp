@@ -2,11 +2,15 @@
 #include <malloc.h>
 
 #include <CLI/CLI.hpp>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
 #include <exception>
 #include <functional>
 #include <map>
 #include <new>
 #include <string>
+#include <system_error>
 
 #include "command.h"
 #include "console.h"
@@ -19,7 +23,6 @@ namespace {
 
 constexpr int kBadData = 1;
 constexpr int kBadUsage = 2;
-constexpr int kInterrupted = 130;
 
 constexpr const char* kFooter =
     "\nExamples:\n"
@@ -29,7 +32,7 @@ constexpr const char* kFooter =
     "  foucault info trip.rawlog                           what is in it\n"
     "  foucault run trip.rawlog --out trip                 process it; see trip/report/index.html\n"
     "\n'foucault COMMAND --help' tells the options of a command.\n"
-    "Exit codes: 0 all right, 1 bad data, 2 wrong usage.";
+    "Exit codes: 0 all right, 1 bad data, 2 wrong usage, 130 interrupted, 143 terminated.";
 
 /// The solver takes and returns arrays of the window's size at every epoch. Beyond some 100 kB
 /// glibc gives them back to the system each time, and faulting them in again took 60 % of a run
@@ -105,21 +108,41 @@ class Program {
   std::map<const CLI::App*, std::function<void(Call&)>> actions_;
 };
 
+/// What was said must have come out: a pipe may be closed, a disk full.
+void finish_output() {
+  const bool flushed = std::fflush(stdout) == 0;
+  const std::string reason = flushed ? "a part of it is missing" : std::strerror(errno);
+  if (flushed && std::ferror(stdout) == 0) return;
+  stop_if_interrupted();
+  throw DataError("cannot write to the standard output: " + reason);
+}
+
+int run(Program& program, int argc, char** argv) {
+  int exit_code = 0;
+  try {
+    exit_code = program.run(argc, argv);
+  } catch (const HelpText& help) {
+    fmt::print("{}", help.what());
+  } catch (const CLI::ParseError& error) {
+    exit_code = program.answer(error);
+  } catch (const std::system_error&) {  // of a print, perhaps
+    finish_output();
+    throw;
+  }
+  finish_output();
+  return exit_code;
+}
+
 int guarded_run(int argc, char** argv) {
   Program program;
   try {
-    return program.run(argc, argv);
-  } catch (const HelpText& help) {
-    fmt::print("{}", help.what());
-    return 0;
-  } catch (const CLI::ParseError& error) {
-    return program.answer(error);
+    return run(program, argc, argv);
   } catch (const UsageError& error) {
     print_error(error.what());
     return kBadUsage;
   } catch (const Interrupted& error) {
-    print_error(error.what());
-    return kInterrupted;
+    if (!error.is_silent()) print_error(error.what());
+    return error.exit_code();
   } catch (const std::bad_alloc&) {
     print_error("out of memory");
   } catch (const std::exception& error) {

@@ -1,13 +1,19 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string>
+#include <vector>
 
 namespace foucault::app {
 
-/// A folder of results that appears whole or not at all. Everything is written into a folder
+class HeldFolder;
+
+/// A folder of results that appears whole or not at all. Everything is written into a hidden folder
 /// beside the target (inside it, if it exists); commit() moves it into place. Without commit() the
-/// destructor removes what was written, and earlier results stay as they were.
+/// destructor removes what was written, and earlier results stay as they were. What a process that
+/// was killed left behind is removed by the next one with the same target; the folder of a process
+/// that lives is locked, and left alone.
 class OutputDirectory {
  public:
   /// Throws DataError if nothing can be written there, UsageError if the path is empty.
@@ -20,14 +26,19 @@ class OutputDirectory {
   const std::filesystem::path& staging() const { return staging_; }
 
   /// Moves everything to the target, over entries of the same name there; other entries of an
-  /// existing target stay. Throws DataError.
+  /// existing target stay. Never is an entry missing or half there, and if one cannot be replaced,
+  /// all are put back. Throws DataError, also if the staging folder has vanished meanwhile, and
+  /// Interrupted.
   void commit();
 
  private:
+  void make_staging();
   void replace_entries();
 
   std::filesystem::path target_;
+  std::vector<std::filesystem::path> new_parents_;  ///< folders made above it, the deepest first
   std::filesystem::path staging_;
+  std::unique_ptr<HeldFolder> held_;  ///< the staging folder
 };
 
 }  // namespace foucault::app

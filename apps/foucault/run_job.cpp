@@ -22,13 +22,15 @@
 namespace foucault::app {
 namespace {
 
-/// An estimator does not know where its measurements come from; whoever reads its errors should.
+/// An estimator does not know where its measurements come from, and that they ended too early;
+/// whoever reads its errors should.
 template <class Work>
-void naming(const std::string& log, Work work) {
+void naming(const std::string& log, const RawlogSource& source, Work work) {
   try {
     work();
   } catch (const DataError& error) {
-    throw DataError(fmt::format("'{}': {}", log, error.what()));
+    const std::string of = source.damage().value_or(fmt::format("'{}'", log));
+    throw DataError(fmt::format("{}: {}", of, error.what()));
   }
 }
 
@@ -74,10 +76,10 @@ void process(const std::string& log, RawlogSource& source, Estimator& estimator,
   for (read_batch(source, batch); !batch.empty(); read_batch(source, batch)) {
     check_batch(batch, checker);
     const StageTimer timer(per_sample);
-    naming(log, [&] { process_batch(batch, estimator, output); });
+    naming(log, source, [&] { process_batch(batch, estimator, output); });
     console.progress("processing", source.progress());
   }
-  naming(log, [&] { estimator.finish(); });
+  naming(log, source, [&] { estimator.finish(); });
   for (const Notice& notice : source.notices()) output.notice(notice);
   warn(checker, output);
   if (source.damage()) output.damage(*source.damage());

@@ -104,6 +104,9 @@ std::vector<MethodTuning> search(const TuneJob& job, Console& console) {
                              store.size(), path));
     throw;
   }
+  if (!std::filesystem::exists(path)) {
+    console.warn(fmt::format("{} was removed meanwhile; finished points are not kept", path));
+  }
   return tunings;
 }
 

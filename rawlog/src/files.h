@@ -21,8 +21,10 @@ void check_readable(const std::string& path);
 /// Throws DataError as check_readable, or if it cannot be opened.
 GzHandle open_for_reading(const std::string& path);
 
-/// A file that appears under its name whole or not at all: written beside, renamed by commit(),
-/// removed by the destructor otherwise. Throws DataError.
+/// A file that appears under its name whole or not at all: written into a hidden one beside,
+/// renamed by commit(), removed by the destructor otherwise. What a process that was killed left
+/// behind is written over by the next one with the same name. Throws DataError, also if another
+/// process is writing the same file.
 class PendingFile {
  public:
   explicit PendingFile(std::string path);
@@ -31,13 +33,17 @@ class PendingFile {
   PendingFile& operator=(const PendingFile&) = delete;
 
   const std::string& path() const { return path_; }
-  const std::string& temporary() const { return temporary_; }
+  /// Open for writing, empty; stays this object's.
+  int descriptor() const { return file_; }
   void commit();
 
  private:
+  bool open_and_lock();
+
   std::string path_;
+  std::string target_;  ///< where a link at `path_` leads
   std::string temporary_;
-  bool committed_ = false;
+  int file_ = -1;
 };
 
 }  // namespace foucault::rawlog

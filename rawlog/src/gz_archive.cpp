@@ -1,6 +1,8 @@
 #include "gz_archive.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
@@ -14,31 +16,43 @@ namespace {
 
 constexpr unsigned kBufferSize = 1U << 17;
 
+/// zlib closes the descriptor that it is given.
+gzFile open_copy(int descriptor) {
+  const int copy = fcntl(descriptor, F_DUPFD_CLOEXEC, 0);
+  if (copy < 0) return nullptr;
+  const gzFile file = gzdopen(copy, "wb2");
+  if (file == nullptr) ::close(copy);
+  return file;
+}
+
 }  // namespace
 
 GzWriteArchive::GzWriteArchive(const PendingFile& file)
-    : path_(file.path()), file_(gzopen(file.temporary().c_str(), "wb2")) {
-  if (!file_) {
-    throw DataError(fmt::format("'{}' cannot be written: {}", path_, std::strerror(errno)));
-  }
+    : path_(file.path()), file_(open_copy(file.descriptor())) {
+  if (!file_) fail();
   gzbuffer(file_.get(), kBufferSize);
   buffer_.reserve(kBufferSize);
+}
+
+void GzWriteArchive::put(const mrpt::serialization::CSerializable& object) {
+  WriteObject(object);
+  if (buffer_.size() >= kBufferSize) flush();
 }
 
 void GzWriteArchive::flush() {
   if (buffer_.empty()) return;
   const int size = static_cast<int>(buffer_.size());
-  if (gzwrite(file_.get(), buffer_.data(), static_cast<unsigned>(size)) != size) {
-    throw DataError(fmt::format("'{}' cannot be written: {}", path_, std::strerror(errno)));
-  }
+  if (gzwrite(file_.get(), buffer_.data(), static_cast<unsigned>(size)) != size) fail();
   buffer_.clear();
 }
 
 void GzWriteArchive::close() {
   flush();
-  if (gzclose(file_.release()) != Z_OK) {
-    throw DataError(fmt::format("'{}' cannot be written: {}", path_, std::strerror(errno)));
-  }
+  if (gzclose(file_.release()) != Z_OK) fail();
+}
+
+void GzWriteArchive::fail() const {
+  throw DataError(fmt::format("'{}' cannot be written: {}", path_, std::strerror(errno)));
 }
 
 size_t GzWriteArchive::read(void*, size_t) { throw std::logic_error("an archive for writing"); }
@@ -46,7 +60,6 @@ size_t GzWriteArchive::read(void*, size_t) { throw std::logic_error("an archive 
 size_t GzWriteArchive::write(const void* source, size_t length) {
   const char* bytes = static_cast<const char*>(source);
   buffer_.insert(buffer_.end(), bytes, bytes + length);
-  if (buffer_.size() >= kBufferSize) flush();
   return length;
 }
 

@@ -15,6 +15,10 @@ class GzWriteArchive final : public mrpt::serialization::CArchive {
   /// Throws DataError if the file cannot be created.
   explicit GzWriteArchive(const PendingFile& file);
 
+  /// Throws DataError if it cannot be written; from within WriteObject MRPT would make it an
+  /// exception of its own.
+  void put(const mrpt::serialization::CSerializable& object);
+
   /// Throws DataError if not everything reached the disk.
   void close();
 
@@ -24,6 +28,7 @@ class GzWriteArchive final : public mrpt::serialization::CArchive {
 
  private:
   void flush();
+  [[noreturn]] void fail() const;
 
   std::string path_;
   GzHandle file_;

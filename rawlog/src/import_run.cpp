@@ -4,6 +4,8 @@
 
 #include <array>
 #include <cmath>
+#include <filesystem>
+#include <vector>
 
 #include "foucault/core/error.h"
 #include "foucault/core/time.h"
@@ -128,6 +130,19 @@ void check(const ImportSummary& summary) {
   check_overlap(summary.imu, *summary.reference, "reference");
 }
 
+/// The recording itself is what must not get lost.
+void check_not_an_input(const std::string& out, const ImportInputs& inputs) {
+  std::vector<std::string> paths{inputs.mapping};
+  for (const RecordReader* reader : {inputs.imu.get(), inputs.gnss.get(), inputs.reference.get()}) {
+    if (reader != nullptr) paths.push_back(reader->table().path());
+  }
+  for (const std::string& path : paths) {
+    std::error_code not_there;
+    if (!std::filesystem::equivalent(path, out, not_there) || not_there) continue;
+    throw UsageError(fmt::format("--out {} is an input of the import; give another name", out));
+  }
+}
+
 }  // namespace
 
 void StampOrder::check(const Row& row, int64_t t_ns) {
@@ -142,6 +157,7 @@ void StampOrder::check(const Row& row, int64_t t_ns) {
 
 ImportSummary run_import(const ImportOptions& options, ImportInputs inputs) {
   constexpr int64_t kRecordsPerReport = 2000;
+  check_not_an_input(options.out, inputs);
   Input imu(std::move(inputs.imu), options.skip_bad_rows);
   Input gnss(std::move(inputs.gnss), options.skip_bad_rows);
   std::optional<Input> reference;

@@ -35,11 +35,12 @@ struct ImportInputs {
   std::unique_ptr<RecordReader> imu;
   std::unique_ptr<RecordReader> gnss;
   std::unique_ptr<RecordReader> reference;  ///< may be null
+  std::string mapping;                      ///< its file, if there is one
   Mounting mounting;
   Eigen::Vector3d lever_arm_v = Eigen::Vector3d::Zero();  ///< IMU to antenna [m]
 };
 
-/// Merges the inputs by stamp into options.out.
+/// Merges the inputs by stamp into options.out. Throws UsageError if that is one of the inputs.
 ImportSummary run_import(const ImportOptions& options, ImportInputs inputs);
 
 /// Latitude, longitude [rad], height [m] within their ranges, else a RowError.

@@ -71,7 +71,7 @@ class RawlogWriter::Impl {
     require_stamp(sample.t_ns);
     require(sample.gyro_b.allFinite() && sample.accel_b.allFinite(), "the IMU sample", sample.t_ns);
     rawlog::encode_imu(sample, imu_);
-    archive_.WriteObject(imu_);
+    archive_.put(imu_);
     imu_begun_ = true;
   }
 
@@ -92,7 +92,7 @@ class RawlogWriter::Impl {
     gnss_.timestamp = rawlog::to_mrpt(fix.t_ns);
     gnss_.originalReceivedTimestamp = gnss_.timestamp;
     rawlog::encode_fix(fix, gnss_);
-    archive_.WriteObject(gnss_);
+    archive_.put(gnss_);
   }
 
   void write(const ReferencePose& pose) {
@@ -101,7 +101,7 @@ class RawlogWriter::Impl {
     reference_.timestamp = rawlog::to_mrpt(pose.t_ns);
     reference_.originalReceivedTimestamp = reference_.timestamp;
     rawlog::encode_reference(pose, reference_);
-    archive_.WriteObject(reference_);
+    archive_.put(reference_);
   }
 
   void write(const WheelSpeed& speed) {
@@ -109,7 +109,7 @@ class RawlogWriter::Impl {
     require(std::isfinite(speed.forward), "the wheel speed", speed.t_ns);
     odometry_.timestamp = rawlog::to_mrpt(speed.t_ns);
     odometry_.velocityLocal.vx = speed.forward;
-    archive_.WriteObject(odometry_);
+    archive_.put(odometry_);
   }
 
   void finish() {

@@ -21,7 +21,7 @@ namespace {
 /// A child process whose output goes into files of a folder.
 class Child {
  public:
-  explicit Child(const std::vector<std::string>& arguments) {
+  Child(const std::string& program, const std::vector<std::string>& arguments) {
     posix_spawn_file_actions_t actions;
     posix_spawn_file_actions_init(&actions);
     constexpr int kWrite = O_WRONLY | O_CREAT | O_TRUNC;
@@ -30,17 +30,17 @@ class Child {
     posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
     posix_spawn_file_actions_addopen(&actions, 1, out.c_str(), kWrite, 0600);
     posix_spawn_file_actions_addopen(&actions, 2, err.c_str(), kWrite, 0600);
-    std::vector<std::string> words{kProgramPath};
+    std::vector<std::string> words{program};
     words.insert(words.end(), arguments.begin(), arguments.end());
     std::vector<char*> argv;
     for (std::string& word : words) argv.push_back(word.data());
     argv.push_back(nullptr);
-    const int error = posix_spawn(&pid_, kProgramPath, &actions, nullptr, argv.data(), environ);
+    const int error = posix_spawn(&pid_, program.c_str(), &actions, nullptr, argv.data(), environ);
     posix_spawn_file_actions_destroy(&actions);
-    if (error != 0) throw std::runtime_error(std::string("cannot start ") + kProgramPath);
+    if (error != 0) throw std::runtime_error("cannot start " + program);
   }
 
-  void terminate() const { kill(pid_, SIGTERM); }
+  pid_t pid() const { return pid_; }
 
   Outcome wait() const {
     int status = 0;
@@ -59,17 +59,31 @@ class Child {
 
 }  // namespace
 
-Outcome foucault(const std::vector<std::string>& arguments) { return Child(arguments).wait(); }
+Outcome foucault(const std::vector<std::string>& arguments) {
+  return Child(kProgramPath, arguments).wait();
+}
 
-Outcome foucault_interrupted(const std::vector<std::string>& arguments,
-                             const std::function<bool()>& now) {
-  const Child child(arguments);
+Outcome foucault_after(const std::string& preparation, const std::vector<std::string>& arguments) {
+  std::vector<std::string> words{"-c", preparation + "; exec \"$0\" \"$@\"", kProgramPath};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  return Child("/bin/sh", words).wait();
+}
+
+Outcome foucault_disturbed(const std::vector<std::string>& arguments,
+                           const std::function<bool()>& now,
+                           const std::function<void(pid_t)>& act) {
+  const Child child(kProgramPath, arguments);
   const auto deadline = std::chrono::steady_clock::now() + std::chrono::minutes(1);
   while (!now() && std::chrono::steady_clock::now() < deadline) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
-  child.terminate();
+  act(child.pid());
   return child.wait();
+}
+
+Outcome foucault_interrupted(const std::vector<std::string>& arguments,
+                             const std::function<bool()>& now, int signal) {
+  return foucault_disturbed(arguments, now, [signal](pid_t pid) { kill(pid, signal); });
 }
 
 std::optional<std::filesystem::path> shared_data() {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <sys/types.h>
+
 #include <filesystem>
 #include <functional>
 #include <optional>
@@ -18,9 +20,16 @@ struct Outcome {
 /// Runs the built `foucault` with `arguments`, stdin empty.
 Outcome foucault(const std::vector<std::string>& arguments);
 
-/// Starts it, sends SIGTERM once `now` says so (or after a minute), and waits for its end.
+/// The same from a shell that has done `preparation` before: "ulimit -f 100", "exec > /dev/full".
+Outcome foucault_after(const std::string& preparation, const std::vector<std::string>& arguments);
+
+/// Starts it, acts on it once `now` says so (or after a minute), and waits for its end.
+Outcome foucault_disturbed(const std::vector<std::string>& arguments,
+                           const std::function<bool()>& now, const std::function<void(pid_t)>& act);
+
+/// Disturbs it with a signal.
 Outcome foucault_interrupted(const std::vector<std::string>& arguments,
-                             const std::function<bool()>& now);
+                             const std::function<bool()>& now, int signal);
 
 /// Folder of the real recordings: $FOUCAULT_DATA_DIR, else shared/data beside the repository.
 std::optional<std::filesystem::path> shared_data();
