@@ -94,7 +94,7 @@ TEST_F(Report, OfACleanTripIsCalmAndConsistent) {
   }
 
   EXPECT_THAT(section("clean", "Timeline")["paragraphs"][0], HasSubstr("Nothing happened"));
-  EXPECT_EQ(lanes("clean").size(), 3U) << "events, fixes used, IMU";
+  EXPECT_EQ(lanes("clean").size(), 3U) << "alignment, fixes used, IMU";
   const json figures = section("clean", "Consistency")["figures"];
   EXPECT_EQ(figures, (json{"nis", "innovation_whiteness", "nees"}));
   for (const json& figure : figures) {
@@ -137,7 +137,7 @@ TEST_F(Report, OfATripWithFaultsShowsEachInItsLane) {
   const std::string lane_names = json(lanes("faults")).dump();
   EXPECT_THAT(lane_names, HasSubstr("gated ("));
   EXPECT_THAT(lane_names, HasSubstr("bad sigma (10)"));
-  EXPECT_THAT(lane_names, HasSubstr("events"));
+  EXPECT_THAT(lane_names, HasSubstr("notices"));
   const std::string summary = section("faults", "Timeline")["paragraphs"][0];
   EXPECT_THAT(summary, Not(HasSubstr("Nothing")));
   EXPECT_THAT(summary, HasSubstr("10 bad sigma"));

@@ -70,6 +70,40 @@ std::string colour_verdict(const ResidualAutocorrelation& autocorrelation) {
          "something that is not modelled (lever arm, time offset, gravity, too stiff biases).";
 }
 
+std::string listed(const std::vector<std::string>& words) {
+  std::string text;
+  for (size_t i = 0; i < words.size(); ++i) {
+    text += (i == 0 ? "" : i + 1 == words.size() ? " and " : ", ") + words[i];
+  }
+  return text;
+}
+
+std::string nees_verdict(const Consistency& c) {
+  std::vector<std::string> above;
+  std::vector<std::string> below;
+  size_t count = 0;
+  for (const auto& [name, nees] :
+       {std::pair{"position", &c.position_nees}, std::pair{"velocity", &c.velocity_nees},
+        std::pair{"attitude", &c.attitude_nees}}) {
+    if (!*nees) continue;
+    ++count;
+    if ((*nees)->mean > (*nees)->mean_band.high) above.emplace_back(name);
+    if ((*nees)->mean < (*nees)->mean_band.low) below.emplace_back(name);
+  }
+  if (count == 0) return {};
+  std::string text = "Against the reference: ";
+  if (above.empty() && below.empty()) return text + "the mean NEES lies within its band.";
+  if (!above.empty()) {
+    text += "the mean NEES of " + listed(above) +
+            " lies above its band, the estimator is too sure of it" + (below.empty() ? "." : "; ");
+  }
+  if (!below.empty()) {
+    text += "the mean NEES of " + listed(below) +
+            " lies below its band, the estimator is better than it says.";
+  }
+  return text;
+}
+
 std::vector<std::string> square_row(const std::string& name, const SquareConsistency& squares) {
   return {name,
           significant_text(squares.mean),
@@ -420,6 +454,8 @@ Section consistency_section(const RunData& data, const std::string& subtitle) {
     section.paragraphs.push_back(size_verdict(c.nis) + tail_verdict(c.innovations) +
                                  colour_verdict(c.autocorrelation));
   }
+  const std::string against_reference = nees_verdict(c);
+  if (!against_reference.empty()) section.paragraphs.push_back(against_reference);
   if (c.nis.samples > 0 || c.position_nees) section.tables.push_back(square_table(c));
   if (c.innovations[0].samples > 0) section.tables.push_back(residual_table(c));
   for (const std::optional<Figure>& figure :

@@ -6,6 +6,7 @@
 #include <array>
 #include <limits>
 #include <optional>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -22,18 +23,22 @@ constexpr double kLaneHeight = 8.5;  // [mm]
 
 struct EventStyle {
   NoticeKind kind;
+  std::string_view lane;
   const char* name;
   Shape shape;
   Ink ink;
 };
 
+constexpr std::string_view kNotices = "notices";
+constexpr std::string_view kAlignment = "alignment";
+
 /// Later ones are drawn over earlier ones.
 constexpr std::array<EventStyle, 5> kEvents{{
-    {NoticeKind::skipped, "notice", Shape::diamond, Ink::gray},
-    {NoticeKind::fix_rejected, "fix rejected", Shape::cross, Ink::vermillion},
-    {NoticeKind::imu_gap, "IMU gap", Shape::square, Ink::purple},
-    {NoticeKind::aligned, "aligned", Shape::triangle, Ink::green},
-    {NoticeKind::realigned, "aligned again", Shape::triangle, Ink::orange},
+    {NoticeKind::skipped, kNotices, "notice", Shape::diamond, Ink::gray},
+    {NoticeKind::fix_rejected, kNotices, "fix rejected", Shape::cross, Ink::vermillion},
+    {NoticeKind::imu_gap, kNotices, "IMU gap", Shape::square, Ink::purple},
+    {NoticeKind::aligned, kAlignment, "aligned", Shape::triangle, Ink::green},
+    {NoticeKind::realigned, kAlignment, "aligned again", Shape::triangle, Ink::orange},
 }};
 
 std::string notice_name(NoticeKind kind) {
@@ -253,21 +258,30 @@ Interval extent(const RunData& data) {
 }
 
 /// Notices from outside the recording are drawn at its ends.
-void add_events(const RunData& data, const Interval& whole, Panel& panel) {
-  if (data.notices.empty()) return;
-  const double level = static_cast<double>(panel.y.categories.size());
-  panel.y.categories.emplace_back("events");
-  for (const EventStyle& style : kEvents) {
-    Series series = points(style.name, style.ink, 8.5, {}, {});
-    series.shape = style.shape;
-    for (const Notice& notice : data.notices) {
-      if (notice.kind != style.kind) continue;
-      const double t = seconds_between(data.start_ns().value_or(notice.t_ns), notice.t_ns);
-      series.x.push_back(std::clamp(t, whole.begin, whole.end));
-      series.y.push_back(level);
-    }
-    if (!series.x.empty()) panel.series.push_back(std::move(series));
+Series event_marks(const RunData& data, const EventStyle& style, const Interval& whole,
+                   double level) {
+  Series marks = points(style.name, style.ink, 8.5, {}, {});
+  marks.shape = style.shape;
+  for (const Notice& notice : data.notices) {
+    if (notice.kind != style.kind) continue;
+    const double t = seconds_between(data.start_ns().value_or(notice.t_ns), notice.t_ns);
+    marks.x.push_back(std::clamp(t, whole.begin, whole.end));
+    marks.y.push_back(level);
   }
+  return marks;
+}
+
+void add_events(const RunData& data, std::string_view lane, const Interval& whole, Panel& panel) {
+  const double level = static_cast<double>(panel.y.categories.size());
+  bool any = false;
+  for (const EventStyle& style : kEvents) {
+    if (style.lane != lane) continue;
+    Series marks = event_marks(data, style, whole, level);
+    if (marks.x.empty()) continue;
+    panel.series.push_back(std::move(marks));
+    any = true;
+  }
+  if (any) panel.y.categories.emplace_back(lane);
 }
 
 /// Holes of the IMU are seen in its lane.
@@ -284,7 +298,7 @@ std::optional<Figure> timeline_figure(const RunData& data, const std::string& su
   remove_imu_shades(panel);
   panel.y.kind = AxisKind::category;
   const double least_length = 0.002 * whole.length();
-  add_events(data, whole, panel);
+  for (const std::string_view lane : {kNotices, kAlignment}) add_events(data, lane, whole, panel);
   for (const Lane& lane : lanes(data)) add_lane(lane, least_length, panel);
   if (data.imu_steps.stamps() > 1) {
     add_lane({"IMU", "IMU", Ink::gray, imu_stretches(data.imu_steps)}, least_length, panel);

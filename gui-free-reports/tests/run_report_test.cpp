@@ -246,6 +246,34 @@ TEST(Consistency, WordsFollowTheNumbers) {
   EXPECT_NE(words(2.2, 0, 0.2).find("coloured"), std::string::npos);
 }
 
+TEST(Consistency, WordsOnTheReference) {
+  const auto words = [](double position, double velocity) {
+    RunReport report(kLabels, Mounting{});
+    Consistency c;
+    c.position_nees = SquareConsistency{100, 50, position, {2.3, 3.7}, 0.95};
+    c.velocity_nees = SquareConsistency{100, 50, velocity, {2.3, 3.7}, 0.95};
+    report.consistency(c);
+    return section_of(report.page(), "Consistency").paragraphs.at(0);
+  };
+  EXPECT_NE(words(3, 3).find("within"), std::string::npos);
+  EXPECT_NE(words(9, 9).find("of position and velocity lies above"), std::string::npos);
+  EXPECT_NE(words(9, 1).find("of position lies above"), std::string::npos);
+  EXPECT_NE(words(9, 1).find("of velocity lies below"), std::string::npos);
+}
+
+TEST(Timeline, NoticesHaveTheirOwnLane) {
+  RunReport report(kLabels, Mounting{});
+  for (int t = 0; t < 50; ++t) report.imu_stamp(nanoseconds(t));
+  report.notice({nanoseconds(1), NoticeKind::aligned, "aligned"});
+  report.notice({nanoseconds(-3600), NoticeKind::skipped, "from another time"});
+  const ReportPage page = report.page();
+  const Panel& panel = figure_of(page, "timeline").panels.at(0);
+  EXPECT_EQ(panel.y.categories, (std::vector<std::string>{"notices", "alignment", "IMU"}));
+  EXPECT_EQ(series_of(panel, "notice").x, std::vector<double>{0}) << "at the border";
+  EXPECT_EQ(section_of(page, "Timeline").details.at(0).rows.at(0).at(2), "from another time");
+  EXPECT_NE(section_of(page, "Timeline").paragraphs.at(0).find("1 notice."), std::string::npos);
+}
+
 TEST(Timeline, IsCalmWhenNothingHappens) {
   RunReport report(kLabels, Mounting{});
   for (int t = 0; t < 50; ++t) {
@@ -258,7 +286,7 @@ TEST(Timeline, IsCalmWhenNothingHappens) {
   const ReportPage page = report.page();
   EXPECT_EQ(section_of(page, "Timeline").paragraphs.at(0).rfind("Nothing happened", 0), 0U);
   const Panel& panel = figure_of(page, "timeline").panels.at(0);
-  EXPECT_EQ(panel.y.categories, (std::vector<std::string>{"events", "fixes used (50)", "IMU"}));
+  EXPECT_EQ(panel.y.categories, (std::vector<std::string>{"alignment", "fixes used (50)", "IMU"}));
   for (const Series& series : panel.series) EXPECT_NE(series.ink, Ink::vermillion);
 }
 
@@ -266,7 +294,7 @@ TEST(Timeline, ShowsStretchesHolesAndEvents) {
   const ReportPage page = demo_page({600, false, true});
   const Panel& panel = figure_of(page, "timeline").panels.at(0);
   EXPECT_EQ(panel.y.categories,
-            (std::vector<std::string>{"events", "gated (39)", "fixes used (2122)", "IMU"}));
+            (std::vector<std::string>{"alignment", "gated (39)", "fixes used (2122)", "IMU"}));
   const auto bars = [&panel](const std::string& column) {
     for (const Series& series : panel.series) {
       if (series.column == column) return series;
