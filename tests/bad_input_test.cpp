@@ -176,6 +176,8 @@ TEST_F(BadInput, WrongUsage) {
   expect_failure({"run"}, kBadUsage, HasSubstr("LOG"));
   expect_failure({"run", log_, "--method", "kalman"}, kBadUsage,
                  AllOf(HasSubstr("kalman"), HasSubstr("refined")));
+  expect_failure({"run", log_, "--method", "kal\nman\x1b[2J"}, kBadUsage,
+                 AllOf(HasSubstr("'kal man [2J'"), Not(HasSubstr("\x1b"))));
   expect_failure({"run", log_, "--set", "imu.preset=unknown"}, kBadUsage, HasSubstr("ADIS16465"));
   expect_failure({"run", log_, "--set", "fgo.windows_s=3"}, kBadUsage, HasSubstr("fgo.window_s"));
   expect_failure({"run", log_, "--set", "fgo.window_s"}, kBadUsage, HasSubstr("fgo.window_s"));
@@ -199,6 +201,10 @@ TEST_F(BadInput, WrongConfiguration) {
                  HasSubstr("broken.yaml"));
   expect_failure({"run", log_, "--config", folder_ / "none.yaml"}, kBadData,
                  HasSubstr("none.yaml"));
+  for (const char* command : {"run", "tune"}) {
+    expect_failure({command, log_, "--config", folder_ / "."}, kBadData,
+                   HasSubstr("is a directory"));
+  }
 }
 
 TEST_F(BadInput, EarlierResultsOutliveARunThatFails) {

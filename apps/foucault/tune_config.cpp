@@ -8,6 +8,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <optional>
@@ -23,6 +24,9 @@ namespace {
 constexpr std::size_t kMostPoints = 1'000'000;
 
 std::string read_file(const std::string& path) {
+  if (std::filesystem::is_directory(path)) {
+    throw DataError(fmt::format("{}: is a directory, not a grid file", path));
+  }
   std::ifstream file(path, std::ios::binary);
   std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
   if (!file) {
@@ -49,7 +53,14 @@ class TuneFile {
           "them all",
           origin_));
     }
-    for (const auto& entry : root_) parts_.push_back({entry.first, entry.second});
+    for (const auto& entry : root_) {
+      const auto first = find(entry.first.Scalar());
+      if (first != parts_.end()) {
+        fail(entry.first, fmt::format("{}: is given twice, first in line {}; remove one",
+                                      entry.first.Scalar(), first->key.Mark().line + 1));
+      }
+      parts_.push_back({entry.first, entry.second});
+    }
   }
 
   [[noreturn]] void fail(const YAML::Node& node, const std::string& what) const {

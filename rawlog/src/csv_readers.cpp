@@ -546,11 +546,13 @@ int64_t TimeColumn::stamp(const Row& row) const {
 ImportMapping load_mapping(const MappingSource& source) {
   ImportMapping mapping;
   load_config(source.mapping, mapping);
-  check_lines(mapping.imu, "imu");
-  check_lines(mapping.gnss, "gnss");
-  check_lines(mapping.reference, "reference");
-  check_lines(mapping.gnss.quality_table, "gnss.quality_table");
-  for (const std::string& axis : mapping.imu.axes) check_line(axis, "imu.axes");
+  naming_mapping(source.mapping, [&] {
+    check_lines(mapping.imu, "imu");
+    check_lines(mapping.gnss, "gnss");
+    check_lines(mapping.reference, "reference");
+    check_lines(mapping.gnss.quality_table, "gnss.quality_table");
+    for (const std::string& axis : mapping.imu.axes) check_line(axis, "imu.axes");
+  });
   return mapping;
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "foucault/core/error.h"
 #include "foucault/rawlog/import_mapping.h"
 #include "import_run.h"
 #include "text_table.h"
@@ -59,6 +60,17 @@ struct MappingSource {
   std::optional<std::string> data_dir;
 };
 ImportMapping load_mapping(const MappingSource& source);
+
+/// Puts the name of its file before what `action` finds wrong in a mapping.
+template <class Action>
+void naming_mapping(const std::string& mapping, Action action) {
+  try {
+    action();
+  } catch (const UsageError& error) {
+    throw UsageError(mapping + ": " + error.what());
+  }
+}
+
 /// `given` (of the command line) as it is, else `file` of the mapping, else none.
 std::optional<std::string> input_path(const MappingSource& source,
                                       const std::optional<std::string>& given,

@@ -242,11 +242,13 @@ ImportSummary import_rtklib(const RtklibImport& options) {
                                  imu ? "gnss" : "imu", imu ? "gnss" : "imu", options.mapping));
   }
   rawlog::ImportInputs inputs;
-  inputs.imu = rawlog::make_imu_reader(mapping.imu, *imu);
-  inputs.gnss = std::make_unique<PosReader>(mapping.gnss, *gnss);
-  if (reference) inputs.reference = rawlog::make_reference_reader(mapping.reference, *reference);
+  rawlog::naming_mapping(options.mapping, [&] {
+    inputs.imu = rawlog::make_imu_reader(mapping.imu, *imu);
+    inputs.gnss = std::make_unique<PosReader>(mapping.gnss, *gnss);
+    if (reference) inputs.reference = rawlog::make_reference_reader(mapping.reference, *reference);
+    inputs.mounting = mapping.imu.mounting();
+  });
   inputs.mapping = options.mapping;
-  inputs.mounting = mapping.imu.mounting();
   inputs.lever_arm_v = options.lever_arm.value_or(mapping.lever_arm_m);
   return rawlog::run_import(options, std::move(inputs));
 }

@@ -300,7 +300,8 @@ TEST_F(Csv, LeftHandedAxesDoNotExist) {
   EXPECT_THAT(error<UsageError>(axes + "[-x, y, z]\n" + kGnss), HasSubstr("left-handed"));
   EXPECT_THAT(error<UsageError>(axes + "[x, x, z]\n" + kGnss), HasSubstr("names an axis twice"));
   EXPECT_THAT(error<UsageError>(axes + "[x, y]\n" + kGnss), HasSubstr("2 entries"));
-  EXPECT_THAT(error<UsageError>(axes + "[x, y, down]\n" + kGnss), HasSubstr("'down' is no axis"));
+  EXPECT_THAT(error<UsageError>(axes + "[x, y, down]\n" + kGnss),
+              HasSubstr("mapping.yaml: imu.axes: 'down' is no axis"));
 }
 
 TEST_F(Csv, QualityVelocityAndRowsWithoutFix) {

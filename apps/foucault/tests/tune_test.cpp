@@ -74,6 +74,8 @@ TEST(TuneConfig, ErrorsNameTheLine) {
   EXPECT_THAT(refusal("base: {}\nmethod: ekf\n"), HasSubstr("has no grid"));
   EXPECT_THAT(refusal("{base: {}}"), HasSubstr("expects lines"));
   EXPECT_THAT(refusal("grid: [\n"), HasSubstr("is not YAML"));
+  EXPECT_THAT(refusal(std::string(kGrid) + "base: {}\n"),
+              HasSubstr("grid.yaml:13: base: is given twice, first in line "));
   EXPECT_THAT(refusal(with("imu.arw_deg_sqrt_h:", "outages.length_s:")),
               HasSubstr("outages are the same for all points"));
   EXPECT_EQ(refusal(kGrid), "");
