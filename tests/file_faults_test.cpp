@@ -142,6 +142,23 @@ TEST_F(FileFaults, AKilledSimulationIsClearedAwayByTheNext) {
   EXPECT_EQ(foucault({"info", folder_ / "trip.rawlog"}).exit_code, 0);
 }
 
+TEST_F(FileFaults, AReportThatIsDrawnAgain) {
+  ASSERT_EQ(foucault(run(folder_ / "out")).exit_code, 0);
+  keep_as_earlier();
+  for (const Stop& stop : kStops) {
+    const Outcome stopped =
+        foucault_interrupted({"report", folder_ / "out"}, something_is_written(), stop.signal);
+    EXPECT_EQ(stopped.exit_code, stop.exit_code);
+    EXPECT_EQ(stopped.err, stop.error);
+    expect_earlier();
+  }
+  foucault_interrupted({"report", folder_ / "out"}, something_is_written(), SIGKILL);
+  EXPECT_EQ(foucault_after("ulimit -f 60", {"report", folder_ / "out"}).exit_code, kBadData);
+  expect_earlier();
+  EXPECT_EQ(foucault({"report", folder_ / "out/report"}).exit_code, 0);
+  expect_earlier();  // the same bytes
+}
+
 // ---- several at once
 
 TEST_F(FileFaults, TwoSimulationsOfOneName) {
@@ -182,6 +199,7 @@ TEST_F(FileFaults, NoRoomForASolution) {
     const Outcome full = foucault_after(limit, run(folder_ / "out"));
     EXPECT_EQ(full.exit_code, kBadData) << limit;
     EXPECT_THAT(full.err, AllOf(HasSubstr("foucault: error: "), HasSubstr("File too large")));
+    EXPECT_THAT(full.err, Not(HasSubstr("120.rawlog'")));  // is not to blame
     expect_earlier();
   }
 }

@@ -28,6 +28,8 @@ template <class Work>
 void naming(const std::string& log, const RawlogSource& source, Work work) {
   try {
     work();
+  } catch (const WriteError&) {
+    throw;
   } catch (const DataError& error) {
     const std::string of = source.damage().value_or(fmt::format("'{}'", log));
     throw DataError(fmt::format("{}: {}", of, error.what()));

@@ -5,8 +5,6 @@
 #include <cerrno>
 #include <cstring>
 
-#include "foucault/core/error.h"
-
 namespace foucault::app {
 
 TextFile::TextFile(const std::filesystem::path& path)
@@ -23,7 +21,7 @@ void TextFile::close() {
 }
 
 void TextFile::fail() const {
-  throw DataError(fmt::format("cannot write '{}': {}", path_.string(), std::strerror(errno)));
+  throw WriteError(fmt::format("cannot write '{}': {}", path_.string(), std::strerror(errno)));
 }
 
 void write_text_file(const std::filesystem::path& path, std::string_view text) {

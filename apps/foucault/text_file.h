@@ -5,9 +5,17 @@
 #include <memory>
 #include <string_view>
 
+#include "foucault/core/error.h"
+
 namespace foucault::app {
 
-/// A text file written from front to back. Whatever goes wrong (a full disk, too) is a DataError.
+/// Results cannot be written: no room, no folder.
+class WriteError : public DataError {
+ public:
+  using DataError::DataError;
+};
+
+/// A text file written from front to back. Whatever goes wrong (a full disk, too) is a WriteError.
 class TextFile {
  public:
   explicit TextFile(const std::filesystem::path& path);
