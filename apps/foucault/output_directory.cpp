@@ -140,6 +140,16 @@ std::vector<fs::path> entries_of(const fs::path& folder) {
   return names;
 }
 
+/// Results take the place of those of the same name, a report that of a report: a folder 'report'
+/// of another origin would be lost.
+void check_report(const fs::path& target) {
+  const fs::path report = target / "report";
+  std::error_code error;
+  if (!fs::is_directory(report, error) || fs::is_empty(report, error)) return;
+  if (fs::exists(report / "report.json", error)) return;
+  fail(target, "its folder 'report' is none of ours and would be replaced");
+}
+
 /// A file is only put in the place of a file, a folder in that of a folder.
 void check_replaceable(const fs::path& ours, const fs::path& theirs) {
   std::error_code ignored;
@@ -170,6 +180,7 @@ void OutputDirectory::make_staging() {
   const bool exists = fs::exists(target_, error);
   if (exists && !fs::is_directory(target_, error)) fail(target_, "it is a file");
   if (fs::is_symlink(target_, error) && !exists) fail(target_, "it is a link to nothing");
+  check_report(target_);
   new_parents_ = missing_parents(target_);
   fs::create_directories(target_.parent_path(), error);
   if (error) fail(target_, error.message());

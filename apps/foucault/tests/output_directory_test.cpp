@@ -36,6 +36,7 @@ class OverEarlierResults : public testing::Test {
     fs::create_directories(folder_.path() / "run/report");
     folder_.write("run/a.txt", "old");
     folder_.write("run/report/old.png", "old");
+    folder_.write("run/report/report.json", "old");
     folder_.write("run/notes.txt", "mine");
   }
   TestFolder folder_;
@@ -81,6 +82,14 @@ TEST_F(OverEarlierResults, AllAreKeptIfOneCannotBeReplaced) {
   EXPECT_TRUE(fs::is_directory(folder_ / "run/z.txt"));
   const fs::directory_iterator begin(folder_.path() / "run");
   EXPECT_EQ(std::distance(begin, fs::directory_iterator{}), 4);
+}
+
+TEST_F(OverEarlierResults, AReportOfAnotherOriginIsNotReplaced) {
+  fs::remove(folder_ / "run/report/report.json");
+  EXPECT_THROW(OutputDirectory(folder_ / "run"), DataError);
+  EXPECT_TRUE(fs::exists(folder_ / "run/report/old.png"));
+  fs::remove(folder_ / "run/report/old.png");
+  EXPECT_NO_THROW(OutputDirectory(folder_ / "run"));
 }
 
 TEST_F(OverEarlierResults, AFolderThatAppearedMeanwhileIsNotLost) {
