@@ -9,6 +9,14 @@
 namespace foucault {
 namespace {
 
+/// Radius of the trust region: the start is good most of the time, and a plain step the best.
+constexpr double kGaussNewton = 1e16;
+/// Where attitudes are off by degrees while velocity increments are known to 1e-4 m/s, the valley
+/// of the cost is curved, a plain step climbs out of it, and the radius must come down to the
+/// valley's.
+constexpr double kDamped = 1e4;
+constexpr int kDampedIterations = 10;  // times those of the options
+
 /// Up to so many nodes a dense factorization is the faster one.
 constexpr std::size_t kDenseNodes = 4;
 
@@ -17,7 +25,7 @@ ceres::Solver::Options solver_options(const FgoOptions& options, std::size_t nod
   solver.linear_solver_type =
       nodes > kDenseNodes ? ceres::SPARSE_NORMAL_CHOLESKY : ceres::DENSE_NORMAL_CHOLESKY;
   solver.trust_region_strategy_type = ceres::LEVENBERG_MARQUARDT;
-  solver.initial_trust_region_radius = 1e16;  // the start is good: plain Gauss-Newton steps
+  solver.initial_trust_region_radius = kGaussNewton;
   solver.max_trust_region_radius = 1e32;
   solver.max_num_iterations = static_cast<int>(options.max_iterations);
   solver.function_tolerance = 1e-7;
@@ -93,6 +101,12 @@ void ChainProblem::optimize(const FgoOptions& options) {
   solver.callbacks.push_back(&stop);
   ceres::Solver::Summary summary;
   ceres::Solve(solver, &problem_, &summary);
+  if (summary.termination_type == ceres::NO_CONVERGENCE) {
+    solver.callbacks.clear();  // of a damped step the model holds, too
+    solver.initial_trust_region_radius = kDamped;
+    solver.max_num_iterations *= kDampedIterations;
+    ceres::Solve(solver, &problem_, &summary);
+  }
   if (!summary.IsSolutionUsable())
     throw std::runtime_error("the factor graph could not be solved: " + summary.message);
 }
