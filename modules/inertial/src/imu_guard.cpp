@@ -11,12 +11,16 @@
 namespace foucault {
 namespace {
 
-constexpr double kLargeRate = 0.09;  // [rad/s], 5 deg/s
-constexpr double kLargeForce = 12;   // [m/s^2], beyond gravity
-constexpr int kClipped = 5;          // samples
-constexpr int kStuck = 20;           // samples
-constexpr double kStuckFor = 0.5;    // [s]
-constexpr double kSame = 1e-9;       // relative: rates come as increments over rounded times
+constexpr double kLargeRate = 0.09;       // [rad/s], 5 deg/s
+constexpr double kLargeForce = 12;        // [m/s^2], beyond gravity
+constexpr int kClipped = 5;               // samples
+constexpr int kStuck = 20;                // samples
+constexpr double kStuckFor = 0.5;         // [s]
+constexpr double kSame = 1e-9;            // relative: rates come as increments over rounded times
+constexpr double kStraight = 0.01;        // bend between samples, relative to the usual one
+constexpr int64_t kUsualMemory = 200;     // samples
+constexpr int kInterpolated = 10;         // samples
+constexpr double kInterpolatedFor = 0.1;  // [s]
 
 std::string when(int64_t t_ns) { return fmt::format("{:.3f} s", to_seconds(t_ns)); }
 
@@ -56,6 +60,34 @@ std::optional<int> ImuGuard::repeating(const Triad& triad, double large) {
   return std::nullopt;
 }
 
+void ImuGuard::Line::add(const Rates& rates, double dt) {
+  const Rates step = rates - last_;
+  const Rates bend = step - step_;
+  last_ = rates;
+  step_ = step;
+  if (goes_on(bend, step)) {
+    ++straight_;
+    straight_s_ += dt;
+    return;
+  }
+  straight_ = 0;
+  straight_s_ = 0;
+  ++known_;
+  const double share = 1 / static_cast<double>(std::min(known_, kUsualMemory));
+  usual_square_ += share * (bend.cwiseAbs2() - usual_square_);
+}
+
+/// A line that stands still is rest, or stuck.
+bool ImuGuard::Line::goes_on(const Rates& bend, const Rates& step) const {
+  constexpr Eigen::Index kSloped = 3;  // axes
+  return known_ >= kUsualMemory && (step.array() != 0).count() >= kSloped &&
+         (bend.array().square() < kStraight * kStraight * usual_square_.array()).all();
+}
+
+bool ImuGuard::Line::is_interpolated() const {
+  return straight_ >= kInterpolated && straight_s_ >= kInterpolatedFor;
+}
+
 ImuGuard::Verdict ImuGuard::look_at(const ImuIncrement& increment) {
   Verdict verdict;
   ++seen_;
@@ -78,6 +110,13 @@ ImuGuard::Verdict ImuGuard::look_at(const ImuIncrement& increment) {
   const std::optional<int> gyro = repeating(gyro_, kLargeRate);
   const std::optional<int> accel = repeating(accel_, kLargeForce);
   verdict.accel_repeats = accel.has_value();
+  Line::Rates rates;
+  rates << increment.dtheta_b / dt, increment.dvel_b / dt;
+  line_.add(rates, dt);
+  if (line_.is_interpolated()) {
+    interpolated_.add(increment.t_end_ns);
+    verdict.increment.reset();
+  }
   if (gyro) {
     repeated_.add(increment.t_end_ns);
     verdict.increment.reset();
@@ -110,6 +149,12 @@ std::vector<std::string> ImuGuard::summary() const {
         fmt::format("{} IMU samples of a gyroscope that was clipped or stuck were left "
                     "out, the first at {}",
                     repeated_.count, when(repeated_.first_ns)));
+  }
+  if (interpolated_.count > 0) {
+    lines.push_back(fmt::format(
+        "{} IMU samples lie on straight lines, interpolated over lost data, and were left out, the "
+        "first at {}",
+        interpolated_.count, when(interpolated_.first_ns)));
   }
   return lines;
 }

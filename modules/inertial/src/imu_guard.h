@@ -19,6 +19,9 @@ namespace foucault {
 /// vehicle at rest that comes five times in a row, or any that comes for half a second, while
 /// another axis of that sensor goes on changing. A gyroscope's samples are left out then: a turn
 /// that was not measured is better told by the courses beside a hole.
+///
+/// Samples on a straight line, all six rates without the noise they had before, were interpolated
+/// over lost data, and are left out.
 class ImuGuard {
  public:
   struct Verdict {
@@ -50,14 +53,30 @@ class ImuGuard {
     void add(double rate, double dt);
   };
   using Triad = std::array<Axis, 3>;
+  /// All rates of the IMU, as a line through the last samples.
+  class Line {
+   public:
+    using Rates = Eigen::Matrix<double, 6, 1>;
+    void add(const Rates& rates, double dt);
+    bool is_interpolated() const;
+
+   private:
+    bool goes_on(const Rates& bend, const Rates& step) const;
+    Rates last_ = Rates::Zero(), step_ = Rates::Zero();
+    Rates usual_square_ = Rates::Zero();  ///< of the bend between samples
+    int64_t known_ = 0;                   ///< samples it rests on
+    int straight_ = 0;                    ///< samples
+    double straight_s_ = 0;
+  };
 
   static void add(const Eigen::Vector3d& rate, double dt, Triad& triad);
   static std::optional<int> repeating(const Triad& triad, double large);
 
   int64_t seen_ = 0;
-  Tally not_finite_, disordered_, repeated_;
+  Tally not_finite_, disordered_, repeated_, interpolated_;
   std::optional<int64_t> last_end_ns_;
   Triad gyro_, accel_;
+  Line line_;
   bool noticed_ = false;
 };
 

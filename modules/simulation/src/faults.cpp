@@ -206,6 +206,29 @@ class Injection {
   std::optional<int64_t> jittered_end_ns_;
 };
 
+/// Rates on straight lines over the fault, from the last increment before it to the first after.
+void interpolate(const Fault& fault, int64_t start_ns, Items& items) {
+  ImuIncrement before, after;
+  std::vector<ImuIncrement*> lost;
+  for (Item& item : items) {
+    auto* increment = std::get_if<ImuIncrement>(&item.measurement);
+    if (increment == nullptr) continue;
+    const double t = seconds_between(start_ns, increment->t_end_ns) - fault.start_s;
+    if (t <= 0) before = *increment;
+    after = *increment;
+    if (t > fault.length_s) break;
+    if (t > 0) lost.push_back(increment);
+  }
+  for (std::size_t i = 0; i < lost.size(); ++i) {
+    const double share = static_cast<double>(i + 1) / static_cast<double>(lost.size() + 1);
+    const double dt = lost[i]->dt();
+    lost[i]->dtheta_b =
+        dt * ((1 - share) * before.dtheta_b / before.dt() + share * after.dtheta_b / after.dt());
+    lost[i]->dvel_b =
+        dt * ((1 - share) * before.dvel_b / before.dt() + share * after.dvel_b / after.dt());
+  }
+}
+
 Items all_of(Source& source) {
   Items items;
   while (const std::optional<Measurement> measurement = source.next()) {
@@ -233,6 +256,7 @@ FaultySource::FaultySource(std::unique_ptr<Source> source, const std::vector<Fau
   Items items = all_of(*source_);
   const int64_t start_ns = items.empty() ? 0 : items.front().due_ns;
   for (const Fault& fault : faults) {
+    if (fault.kind == FaultKind::imu_interpolated) interpolate(fault, start_ns, items);
     items = Injection(fault, start_ns, Draws(seed, RandomStream::faults)).apply(items);
   }
   sort(items);

@@ -26,14 +26,15 @@ enum class FaultKind {
   fix_another_week,   ///< every tenth is stamped `size` weeks later
   fix_stamps_offset,  ///< stamped `size` seconds later
   // Samples of the IMU.
-  imu_gap,        ///< nothing
-  imu_duplicate,  ///< every tenth comes twice
-  imu_backward,   ///< every tenth after its successor
-  imu_jitter,     ///< stamps off by noise of sigma `size` [s]
-  imu_nan,        ///< every tenth is not a number
-  imu_clipped,    ///< angular rates beyond `size` [rad/s] are cut off
-  imu_stuck,      ///< the third gyroscope repeats its last value
-  imu_half_rate,  ///< every two samples are one
+  imu_gap,           ///< nothing
+  imu_duplicate,     ///< every tenth comes twice
+  imu_backward,      ///< every tenth after its successor
+  imu_jitter,        ///< stamps off by noise of sigma `size` [s]
+  imu_nan,           ///< every tenth is not a number
+  imu_clipped,       ///< angular rates beyond `size` [rad/s] are cut off
+  imu_stuck,         ///< the third gyroscope repeats its last value
+  imu_half_rate,     ///< every two samples are one
+  imu_interpolated,  ///< on straight lines, from the last sample before to the first after
   imu_splice,  ///< `size` seconds are missing, the stamps after it run on evenly until the end of
                ///< the fault, where they are right again
   imu_gyro_in_degrees,  ///< deg/s where rad/s are said
