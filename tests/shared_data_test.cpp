@@ -1,6 +1,9 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -13,6 +16,19 @@ namespace foucault::test {
 namespace {
 
 using nlohmann::json;
+
+int occurrences(const std::string& part, const std::string& text) {
+  int count = 0;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) {
+    ++count;
+  }
+  return count;
+}
+
+std::string contents_of(const std::string& path) {
+  std::ifstream stream(path);
+  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+}
 
 class SharedData : public testing::Test {
  protected:
@@ -51,6 +67,24 @@ class SharedData : public testing::Test {
   /// Of the tables in `folder` of the shared data.
   void import_with(const std::string& name, const std::string& folder) const {
     import({"csv", "--mapping", mapping(name), "--data", file(folder)});
+  }
+
+  void import_as_recorded(const std::string& name, const std::string& folder) const {
+    const std::string original = contents_of(mapping(name));
+    const std::regex offset(R"(, offset_s: [-0-9.]+)");
+    ASSERT_TRUE(std::regex_search(original, offset));
+    folder_.write("recorded.yaml", std::regex_replace(original, offset, ""));
+    import({"csv", "--mapping", folder_ / "recorded.yaml", "--data", file(folder)});
+  }
+
+  /// Of the IMU's stamps, by `check` [s].
+  double found_time_offset() const {
+    const std::string out = foucault({"check", log()}).out;
+    std::smatch found;
+    const std::regex line(R"(stamps of the IMU are ([0-9.]+) s \(sigma [0-9.]+\) (after|before))");
+    EXPECT_TRUE(std::regex_search(out, found, line)) << out;
+    if (found.empty()) return std::nan("");
+    return found[2] == "after" ? std::stod(found[1]) : -std::stod(found[1]);
   }
 
   std::string log() const { return folder_ / "trip.rawlog"; }
@@ -113,11 +147,34 @@ TEST_F(SharedData, AerobaticsStayTogether) {
   }
 }
 
-TEST_F(SharedData, LocalFrameWithAPlaceInTheMapping) {
+/// The IMU of this recording was interpolated over 1.5 s, eight times, and the file does not say
+/// so.
+TEST_F(SharedData, LocalFrameWithAPlaceInTheMappingAndHiddenSplices) {
   import_with("kitti_drive0027_oxts", "kitti_drive0027_oxts");
-  const json m = run({"--method", "ekf", "--config", config("tactical_instantaneous")});
-  // The recording has hidden splices; fixes about them are rightly refused.
-  EXPECT_GT(m["gnss"]["used"], 350);
+  for (const std::string method : {"refined", "ekf"}) {
+    const Outcome outcome =
+        foucault({"run", log(), "--method", method, "--config", config("tactical_instantaneous"),
+                  "--no-report", "--out", folder_ / "run"});
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_EQ(occurrences("no IMU data for 1.", outcome.err), 8) << outcome.err;
+    const json m = json::parse(folder_.text("run/metrics.json"));
+    EXPECT_GT(m["gnss"]["used"], 450) << method;
+    // 0.88, 0.54 and 0.30 m with the made-up samples.
+    EXPECT_LT(m["gnss"]["innovation_rms_m"]["north"], 0.35) << method;
+    EXPECT_LT(m["gnss"]["innovation_rms_m"]["down"], 0.15) << method;
+  }
+}
+
+/// As recorded, that is without what the mappings correct.
+TEST_F(SharedData, TimeOffsetsAreFound) {
+  import_as_recorded("rtk_car_drive0708_csv", "rtk_car_drive0708");
+  EXPECT_NEAR(found_time_offset(), 0.275, 0.05);
+  import_as_recorded("kitti_drive0027_oxts", "kitti_drive0027_oxts");
+  EXPECT_NEAR(found_time_offset(), 0, 0.02);
+  const std::string set = "sim_i2nav_adis16465/";
+  import({"i2nav", "--imu", file(set + "imu.txt.gz"), "--gnss", file(set + "gnss.pos"),
+          "--gps-week", "2200", "--lever-arm", "0.1,-0.3,-0.8"});
+  EXPECT_NEAR(found_time_offset(), 0, 0.02);
 }
 
 TEST_F(SharedData, WithoutMotionTheHeadingMustBeGiven) {

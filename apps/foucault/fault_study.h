@@ -1,34 +1,20 @@
 #pragma once
 
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "fault_cases.h"
 #include "foucault/evaluation/drift_table.h"
-#include "foucault/simulation/faults.h"
 #include "foucault/simulation/scenario.h"
 #include "settings.h"
 
 /// What faults of recordings do to the methods, on simulated trips with exact truth.
 namespace foucault::app {
 
-struct FaultCase {
-  std::string name;   ///< "fix_ramp"
-  std::string title;  ///< what is injected, in words
-  std::vector<Fault> faults;
-};
-
-/// All of them, the clean recording first.
-const std::vector<FaultCase>& fault_cases();
-
-/// Throws UsageError naming the known cases.
-const FaultCase& find_fault_case(const std::string& name);
-
 /// The trip, common to all cases: city, ADIS16465 at 200 Hz, RTK at 1 Hz, 460 s, of which the first
-/// 40 at rest; faults of the middle begin at kFaultStart.
+/// 40 at rest.
 ScenarioOptions fault_scenario(int64_t seed);
-constexpr double kFaultStart = 200;
 
 struct FaultOutcome {
   std::string fault;
@@ -38,20 +24,26 @@ struct FaultOutcome {
   std::string message;   ///< the error, or what the notices say
   int64_t used = 0;      ///< fixes
   int64_t rejected = 0;  ///< fixes
+  int64_t errors = 0;    ///< epochs compared with the truth
   double rms_m = 0;      ///< horizontal error, from 60 s after the alignment on
   double largest_m = 0;  ///< its largest
   /// From the end of the fault (or its start, if it does not end) until the error stays below
-  /// kRecovered; none if it does not before the end.
+  /// kRecovered; none if it does not before the end, or there are no errors to tell.
   std::optional<double> recovery_s;
 };
 
 /// Horizontal error that counts as recovered [m]: 10 sigmas of a fix.
 constexpr double kRecovered = 0.1;
 
-FaultOutcome run_fault(const FaultCase& fault, const std::string& method, const Settings& settings,
-                       int64_t seed);
+/// Writes the trip with its fault to `log`, processes it with each method as `foucault run` does,
+/// and removes it.
+std::vector<FaultOutcome> run_fault(const FaultCase& fault, const std::vector<std::string>& methods,
+                                    const Settings& settings, int64_t seed, const std::string& log);
 
-/// A row a case and method.
+/// A row a case, method and seed.
 TextTable fault_table(const std::vector<FaultOutcome>& outcomes);
+
+/// A row a case, methods side by side, of the first seed.
+TextTable fault_summary(const std::vector<FaultOutcome>& outcomes);
 
 }  // namespace foucault::app

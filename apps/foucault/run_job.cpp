@@ -62,15 +62,6 @@ void process_batch(const std::vector<Measurement>& batch, Estimator& estimator, 
   }
 }
 
-void warn(const LogChecker& checker, RunOutput& output) {
-  const int64_t begin_ns = checker.facts().imu.first_ns;
-  for (const Finding& finding : checker.findings()) {
-    if (finding.severity == Severity::ok) continue;
-    output.notice({begin_ns, NoticeKind::skipped,
-                   fmt::format("{}: {} ({})", finding.subject, finding.text, finding.remedy)});
-  }
-}
-
 void process(const std::string& log, RawlogSource& source, Estimator& estimator, Stage per_sample,
              RunOutput& output, LogChecker& checker, Console& console) {
   std::vector<Measurement> batch;
@@ -83,7 +74,7 @@ void process(const std::string& log, RawlogSource& source, Estimator& estimator,
   }
   naming(log, source, [&] { estimator.finish(); });
   for (const Notice& notice : source.notices()) output.notice(notice);
-  warn(checker, output);
+  for (const Notice& notice : checker.warnings()) output.notice(notice);
   if (source.damage()) output.damage(*source.damage());
 }
 

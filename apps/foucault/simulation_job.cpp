@@ -1,9 +1,12 @@
 #include "simulation_job.h"
 
+#include <memory>
+#include <utility>
 #include <variant>
 
 #include "foucault/core/error.h"
 #include "foucault/rawlog/rawlog_writer.h"
+#include "foucault/simulation/faults.h"
 #include "foucault/simulation/simulated_source.h"
 
 namespace foucault::app {
@@ -15,6 +18,12 @@ void count(const Measurement& measurement, SimulationCounts& counts) {
   if (std::holds_alternative<ReferencePose>(measurement)) ++counts.reference_poses;
 }
 
+std::unique_ptr<Source> make_source(const SimulationSettings& settings, const FaultCase& fault) {
+  auto source = std::make_unique<SimulatedSource>(settings.scenario, settings.imu.noise());
+  if (fault.faults.empty()) return source;
+  return std::make_unique<FaultySource>(std::move(source), fault.faults, settings.scenario.seed);
+}
+
 }  // namespace
 
 void SimulationSettings::fields(ConfigFields& f) {
@@ -24,18 +33,25 @@ void SimulationSettings::fields(ConfigFields& f) {
 
 SimulationCounts write_simulation(const SimulationSettings& settings, const std::string& path,
                                   Console& console) {
+  return write_simulation(settings, FaultCase(), path, console);
+}
+
+SimulationCounts write_simulation(const SimulationSettings& settings, const FaultCase& fault,
+                                  const std::string& path, Console& console) {
   if (settings.imu.sample_kind() != SampleKind::interval_mean) {
     throw UsageError("imu.samples: simulated samples are means over intervals; use interval_mean");
   }
-  SimulatedSource source(settings.scenario, settings.imu.noise());
-  RawlogWriter writer(path, source.mounting());
+  const std::unique_ptr<Source> source = make_source(settings, fault);
+  RawlogWriter writer(path, source->mounting(),
+                      fault.faults.empty() ? WrittenValues::finite : WrittenValues::any);
   SimulationCounts counts;
-  while (const std::optional<Measurement> measurement = source.next()) {
+  while (const std::optional<Measurement> measurement = source->next()) {
     writer.write(*measurement);
     count(*measurement, counts);
-    console.progress("simulating", source.progress());
+    console.progress("simulating", source->progress());
   }
   writer.finish();
+  damage_file(path, fault.damage);
   return counts;
 }
 

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "console.h"
+#include "fault_cases.h"
 #include "foucault/inertial/imu_noise.h"
 #include "foucault/simulation/scenario.h"
 
@@ -27,5 +28,9 @@ struct SimulationCounts {
 /// Throws UsageError for settings that make no sense, DataError if `path` cannot be written.
 SimulationCounts write_simulation(const SimulationSettings& settings, const std::string& path,
                                   Console& console);
+
+/// The same with a fault: also with values that a writer refuses, and with the file damaged.
+SimulationCounts write_simulation(const SimulationSettings& settings, const FaultCase& fault,
+                                  const std::string& path, Console& console);
 
 }  // namespace foucault::app

@@ -13,6 +13,7 @@
 #include "foucault/core/error.h"
 #include "foucault/core/time.h"
 #include "foucault/inertial/increments.h"
+#include "foucault/inertial/time_mismatch.h"
 #include "mrpt_convert.h"
 #include "rawlog_stream.h"
 
@@ -441,10 +442,12 @@ void RawlogSource::Impl::check_overlap() const {
                     "rawlog.reorder_s",
                     path_, options_.reorder_s));
   }
+  const double later_s = to_seconds(fix_span_.first_ns - imu_span_.first_ns);
   throw DataError(fmt::format(
-      "'{}': IMU ({} to {}) and GNSS ({} to {}) do not overlap; check the time systems of the two",
-      path_, rawlog::describe_stamp(imu_span_.first_ns), rawlog::describe_stamp(imu_span_.last_ns),
-      rawlog::describe_stamp(fix_span_.first_ns), rawlog::describe_stamp(fix_span_.last_ns)));
+      "'{}': IMU ({} to {}) and GNSS ({} to {}) do not overlap; GNSS begins {}", path_,
+      rawlog::describe_stamp(imu_span_.first_ns), rawlog::describe_stamp(imu_span_.last_ns),
+      rawlog::describe_stamp(fix_span_.first_ns), rawlog::describe_stamp(fix_span_.last_ns),
+      describe_mismatch(later_s)));
 }
 
 void RawlogSource::Impl::fail(int64_t record, int64_t t_ns, const std::string& what) const {

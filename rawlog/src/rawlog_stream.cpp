@@ -232,15 +232,15 @@ std::string RawlogStream::of_another_version(const UnknownVersion& error) const 
   const std::string_view type = without_namespace(object_);
   if (error.age() == UnknownVersion::Age::older) {
     return fmt::format(
-        "'{}': record {} ({}) is of a version from before 2015; write the log again with MRPT's "
-        "rawlog-edit",
-        path_, records_ + 1, type);
+        "'{}': record {} ({}) at {} is of a version from before 2015, or damaged; write the log "
+        "again with MRPT's rawlog-edit, or copy it again",
+        path_, records_ + 1, type, place(file_.offset()));
   }
   return fmt::format(
-      "'{}': record {} ({}) was written by a newer MRPT{} than the {} of this program; build the "
-      "program with that MRPT, or write the log again with an older one",
-      path_, records_ + 1, type, type == "CObservationGPS" ? " (2.11.12 or later)" : "",
-      mrpt_version());
+      "'{}': record {} ({}) at {} was written by a newer MRPT{} than the {} of this program; build "
+      "the program with that MRPT, or write the log again with an older one",
+      path_, records_ + 1, type, place(file_.offset()),
+      type == "CObservationGPS" ? " (2.11.12 or later)" : "", mrpt_version());
 }
 
 }  // namespace foucault::rawlog

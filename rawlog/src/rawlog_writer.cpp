@@ -24,12 +24,6 @@ bool finite(const Geodetic& position) {
          std::isfinite(position.height);
 }
 
-void require(bool ok, const char* what, int64_t t_ns) {
-  if (ok) return;
-  throw DataError(fmt::format("{} at {} is not finite; remove it from the input", what,
-                              rawlog::describe_stamp(t_ns)));
-}
-
 void require_stamp(int64_t t_ns) {
   if (rawlog::in_range_of_stamps(t_ns)) return;
   throw DataError(
@@ -57,8 +51,8 @@ ImuSample mean_rates(const ImuIncrement& increment) {
 
 class RawlogWriter::Impl {
  public:
-  Impl(const std::string& path, const Mounting& mounting)
-      : file_(path), archive_(file_), mounting_(mounting) {
+  Impl(const std::string& path, const Mounting& mounting, WrittenValues values)
+      : file_(path), archive_(file_), mounting_(mounting), values_(values) {
     imu_.sensorLabel = "IMU";
     imu_.sensorPose = rawlog::to_mrpt({mounting.q_v_b, Eigen::Vector3d::Zero()});
     gnss_.sensorLabel = "GNSS";
@@ -118,6 +112,12 @@ class RawlogWriter::Impl {
   }
 
  private:
+  void require(bool ok, const char* what, int64_t t_ns) const {
+    if (ok || values_ == WrittenValues::any) return;
+    throw DataError(fmt::format("{} at {} is not finite; remove it from the input", what,
+                                rawlog::describe_stamp(t_ns)));
+  }
+
   void set_lever_arm(const Eigen::Vector3d& p_b_a) {
     const Eigen::Quaterniond forward_left_up(0, 1, 0, 0);  // an antenna has no axes of its own
     gnss_.sensorPose = rawlog::to_mrpt({forward_left_up, mounting_.q_v_b * p_b_a});
@@ -127,6 +127,7 @@ class RawlogWriter::Impl {
   rawlog::PendingFile file_;
   rawlog::GzWriteArchive archive_;
   Mounting mounting_;
+  WrittenValues values_;
   mrpt::obs::CObservationIMU imu_;
   mrpt::obs::CObservationGPS gnss_;
   mrpt::obs::CObservationGPS reference_;
@@ -135,8 +136,8 @@ class RawlogWriter::Impl {
   bool imu_begun_ = false;
 };
 
-RawlogWriter::RawlogWriter(const std::string& path, const Mounting& mounting)
-    : impl_(std::make_unique<Impl>(path, mounting)) {}
+RawlogWriter::RawlogWriter(const std::string& path, const Mounting& mounting, WrittenValues values)
+    : impl_(std::make_unique<Impl>(path, mounting, values)) {}
 RawlogWriter::~RawlogWriter() = default;
 RawlogWriter::RawlogWriter(RawlogWriter&&) noexcept = default;
 

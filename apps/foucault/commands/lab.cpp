@@ -10,6 +10,7 @@
 #include "foucault/reports/report_page.h"
 #include "laboratory_output.h"
 #include "laboratory_report.h"
+#include "methods.h"
 #include "output_directory.h"
 #include "text_file.h"
 
@@ -71,7 +72,6 @@ struct FaultStudyOptions {
 
 struct FaultTask {
   std::string fault;
-  std::string method;
   int64_t seed;
 };
 
@@ -80,12 +80,11 @@ std::vector<FaultTask> fault_tasks(const FaultStudyOptions& options) {
   if (names.empty()) {
     for (const FaultCase& fault : fault_cases()) names.push_back(fault.name);
   }
+  for (const std::string& method : options.methods) find_method(method);
   std::vector<FaultTask> tasks;
   for (const std::string& name : names) {
     find_fault_case(name);
-    for (const std::string& method : options.methods) {
-      for (const int64_t seed : options.seeds) tasks.push_back({name, method, seed});
-    }
+    for (const int64_t seed : options.seeds) tasks.push_back({name, seed});
   }
   return tasks;
 }
@@ -93,18 +92,24 @@ std::vector<FaultTask> fault_tasks(const FaultStudyOptions& options) {
 void study_faults(const FaultStudyOptions& options, Call& call) {
   const std::vector<FaultTask> tasks = fault_tasks(options);
   OutputDirectory directory(options.out);
-  std::vector<FaultOutcome> outcomes(tasks.size());
+  std::vector<std::vector<FaultOutcome>> results(tasks.size());
   run_tasks(
       tasks.size(), options.jobs,
       [&](std::size_t i, const TaskProgress& progress) {
         progress(0);
         const FaultTask& task = tasks[i];
-        outcomes[i] = run_fault(find_fault_case(task.fault), task.method, Settings(), task.seed);
+        const std::filesystem::path log =
+            directory.staging() / fmt::format("{}-{}.rawlog", task.fault, task.seed);
+        results[i] = run_fault(find_fault_case(task.fault), options.methods, Settings(), task.seed,
+                               log.string());
       },
       call.console.progress_of("faults"));
-  const TextTable table = fault_table(outcomes);
-  write_text_file(directory.staging() / "faults.csv", to_csv(table));
-  write_text_file(directory.staging() / "faults.md", to_markdown(table));
+  std::vector<FaultOutcome> outcomes;
+  for (const auto& result : results) {
+    outcomes.insert(outcomes.end(), result.begin(), result.end());
+  }
+  write_text_file(directory.staging() / "faults.csv", to_csv(fault_table(outcomes)));
+  write_text_file(directory.staging() / "faults.md", to_markdown(fault_summary(outcomes)));
   directory.commit();
   call.console.say(fmt::format("{:<10} {}", "written", options.out));
 }
@@ -124,7 +129,10 @@ CLI::App* declare_fault_study(CLI::App& app, FaultStudyOptions& o) {
   faults->add_option("--jobs", o.jobs, "Runs at the same time")
       ->check(CLI::Range(1, 1024))
       ->capture_default_str();
-  faults->add_option("--out", o.out, "Folder for faults.csv and faults.md")->capture_default_str();
+  faults
+      ->add_option("--out", o.out,
+                   "Folder for faults.csv, a row a run, and faults.md, a row a fault")
+      ->capture_default_str();
   return faults;
 }
 

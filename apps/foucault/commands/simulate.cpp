@@ -5,15 +5,29 @@
 
 #include "command.h"
 #include "config_arguments.h"
+#include "fault_cases.h"
 #include "simulation_job.h"
 
 namespace foucault::app {
+namespace {
+
+std::string fault_help() {
+  std::string help =
+      fmt::format("What is wrong with it; faults of the middle begin at {:.0f} s:", kFaultStart);
+  for (const FaultCase& fault : fault_cases()) {
+    help += fmt::format("\n  {}: {}", fault.name, fault.title);
+  }
+  return help;
+}
+
+}  // namespace
 
 std::function<void(Call&)> declare_simulate(CLI::App& app) {
   struct Options {
     std::optional<std::string> imu;
     std::optional<double> duration;
     std::optional<int64_t> seed;
+    std::string fault = fault_cases().front().name;
     ConfigArguments config;
     std::string out;
   };
@@ -21,6 +35,7 @@ std::function<void(Call&)> declare_simulate(CLI::App& app) {
   app.add_option("--imu", o->imu, "IMU preset, short for --set imu.preset=NAME");
   app.add_option("--duration", o->duration, "Length [s], short for --set scenario.duration_s=N");
   app.add_option("--seed", o->seed, "Seed of trip and noise, short for --set scenario.seed=N");
+  app.add_option("--fault", o->fault, fault_help())->capture_default_str();
   add_config_options(app, o->config, [] {
     SimulationSettings settings;
     return describe_config(settings);
@@ -29,6 +44,7 @@ std::function<void(Call&)> declare_simulate(CLI::App& app) {
   app.footer(
       "\nExamples:\n"
       "  foucault simulate --imu ADIS16465 --duration 600 --seed 7 --out trip.rawlog\n"
+      "  foucault simulate --duration 460 --fault ramp --out ramp.rawlog\n"
       "  foucault simulate --set scenario.name=motorway --set scenario.gnss_rate_hz=5 --out "
       "m.rawlog");
   return [o](Call& call) {
@@ -37,7 +53,8 @@ std::function<void(Call&)> declare_simulate(CLI::App& app) {
     if (o->imu) settings.imu.preset = *o->imu;
     if (o->duration) set_config(fmt::format("scenario.duration_s={}", *o->duration), settings);
     if (o->seed) set_config(fmt::format("scenario.seed={}", *o->seed), settings);
-    const SimulationCounts counts = write_simulation(settings, o->out, call.console);
+    const SimulationCounts counts =
+        write_simulation(settings, find_fault_case(o->fault), o->out, call.console);
     call.console.say(
         fmt::format("{}: {:.1f} s of '{}' with {}, {} IMU samples, {} fixes, {} poses "
                     "of the truth",

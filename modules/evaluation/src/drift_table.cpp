@@ -132,7 +132,10 @@ std::string to_markdown(const TextTable& table) {
   std::string text = table.title.empty() ? std::string() : fmt::format("**{}**\n\n", table.title);
   text += markdown_row(table.header);
   text += "|---|";
-  for (std::size_t i = 1; i < table.header.size(); ++i) text += "---:|";
+  for (std::size_t i = 1; i < table.header.size(); ++i) {
+    const bool words = table.ends_in_words && i + 1 == table.header.size();
+    text += words ? "---|" : "---:|";
+  }
   text += "\n";
   for (const std::vector<std::string>& row : table.rows) text += markdown_row(row);
   return text;

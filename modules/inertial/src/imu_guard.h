@@ -63,7 +63,8 @@ class ImuGuard {
    private:
     bool goes_on(const Rates& bend, const Rates& step) const;
     Rates last_ = Rates::Zero(), step_ = Rates::Zero();
-    Rates usual_square_ = Rates::Zero();  ///< of the bend between samples
+    Rates usual_ = Rates::Zero();         ///< mean bend between samples
+    Rates usual_square_ = Rates::Zero();  ///< mean of its square
     int64_t known_ = 0;                   ///< samples it rests on
     int straight_ = 0;                    ///< samples
     double straight_s_ = 0;

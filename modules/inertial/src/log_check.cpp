@@ -12,8 +12,8 @@
 #include "course_finder.h"
 #include "foucault/core/time.h"
 #include "foucault/geodesy/local_frame.h"
+#include "foucault/inertial/time_mismatch.h"
 #include "plausibility.h"
-#include "time_mismatch.h"
 
 namespace foucault {
 namespace {
@@ -420,8 +420,11 @@ void judge_turns(const LogFacts& facts, Judgement& out) {
       std::abs(match.offset_s), match.offset_sigma_s, match.offset_s >= 0 ? "after" : "before",
       match.samples, match.correlation, match.slope);
   if (match.correlation < kAgree) {
-    return out.warn("time offset", text,
-                    "turns do not agree; look at `foucault run`'s innovations");
+    return out.warn("turns",
+                    fmt::format("courses of GNSS and turns of the gyroscopes do not agree, "
+                                "correlation {:.2f} in {} courses",
+                                match.correlation, match.samples),
+                    "look for outliers in the innovations of `foucault run`, or give the axes");
   }
   if (std::abs(match.offset_s) > kHarmless + 3 * match.offset_sigma_s) {
     return out.warn("time offset", text,
@@ -519,6 +522,16 @@ void LogChecker::add(const Measurement& measurement) {
 LogFacts LogChecker::facts() const { return impl_->facts(); }
 
 std::vector<Finding> LogChecker::findings() const { return judge(facts(), impl_->configured); }
+
+std::vector<Notice> LogChecker::warnings() const {
+  std::vector<Notice> warnings;
+  for (const Finding& finding : findings()) {
+    if (finding.severity == Severity::ok) continue;
+    warnings.push_back({facts().imu.first_ns, NoticeKind::skipped,
+                        fmt::format("{}: {} ({})", finding.subject, finding.text, finding.remedy)});
+  }
+  return warnings;
+}
 
 std::vector<Finding> judge(const LogFacts& facts, const ImuNoise& configured) {
   constexpr double kImuHole = 0.1, kGnssHole = 30;  // [s]

@@ -14,11 +14,11 @@
 #include "foucault/core/time.h"
 #include "foucault/geodesy/local_frame.h"
 #include "foucault/inertial/increments.h"
+#include "foucault/inertial/time_mismatch.h"
 #include "imu_guard.h"
 #include "imu_hole.h"
 #include "known_biases.h"
 #include "plausibility.h"
-#include "time_mismatch.h"
 
 namespace foucault {
 
@@ -247,6 +247,8 @@ void NavigationRun::start(const Epoch& aligned) {
   started_before_ = true;
   time_ns_ = initial.t_ns;
   last_node_ns_ = initial.t_ns;
+  constexpr int64_t kSettling = 60 * kNanosecondsPerSecond;
+  settled_ns_ = initial.t_ns + kSettling;
   judge_->start(initial.t_ns);
   navigator_->start(initial);
   emit_epoch();
@@ -469,6 +471,7 @@ void NavigationRun::handle_fix(const GnssFix& fix) {
     result.innovation_covariance = innovation.covariance;
     result.verdict = judge(trusted, innovation);
     if (result.verdict == FixVerdict::used) {
+      weigh(innovation);
       use(trusted, result);
     } else {
       result.postfit_n = result.innovation_n;
@@ -511,6 +514,13 @@ void NavigationRun::use(const GnssFix& fix, FixResult& result) {
   result.postfit_n = difference_n(fix.antenna, antenna_of(epoch, fix.p_b_a));
 }
 
+void NavigationRun::weigh(const Innovation& innovation) {
+  if (time_ns_ < settled_ns_) return;
+  const Eigen::LLT<Eigen::Matrix3d> llt(innovation.covariance);
+  nis_sum_ += innovation.value_n.dot(llt.solve(innovation.value_n));
+  ++nis_count_;
+}
+
 void NavigationRun::remember_fix_time() {
   if (last_fix_ns_) fix_interval_ns_ = time_ns_ - *last_fix_ns_;
   last_fix_ns_ = time_ns_;
@@ -539,8 +549,23 @@ void NavigationRun::finish() {
   notice_left_out();
 }
 
+/// Three times is beyond what colours of errors do.
+std::optional<std::string> NavigationRun::misfit() const {
+  constexpr int64_t kEnough = 30;  // fixes
+  constexpr double kMisfit = 3;
+  if (nis_count_ < kEnough) return std::nullopt;
+  const double times = std::sqrt(nis_sum_ / (3 * static_cast<double>(nis_count_)));
+  if (times < kMisfit) return std::nullopt;
+  return fmt::format(
+      "innovations are {:.1f} times as large as their sigmas: those of the fixes "
+      "(gnss.sigma_scale), the noise of the IMU (imu.*) or the clocks are wrong; see `foucault "
+      "check`",
+      times);
+}
+
 void NavigationRun::notice_left_out() {
   std::vector<std::string> lines = guard_->summary();
+  if (const std::optional<std::string> line = misfit()) lines.push_back(*line);
   if (counts_.repeated > 0) {
     lines.push_back(
         fmt::format("{} fixes repeat the one before them and were left out", counts_.repeated));

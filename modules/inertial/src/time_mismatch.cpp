@@ -1,4 +1,4 @@
-#include "time_mismatch.h"
+#include "foucault/inertial/time_mismatch.h"
 
 #include <fmt/format.h>
 

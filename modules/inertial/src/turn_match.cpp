@@ -22,6 +22,7 @@ constexpr double kShortestCourse = 0.45;  // [s]
 constexpr double kLongestCourse = 4;      // [s]
 constexpr double kSlowest = 3;            // [m/s]
 constexpr double kLongestChange = 6;      // [s] between courses
+constexpr double kFastestTurn = 1;        // [rad/s]; faster are outliers of the fixes
 constexpr double kEnoughTurn = 1.5708;    // [rad]
 constexpr int64_t kEnoughSamples = 20;
 constexpr double kDegree = 0.0174532925199432958;
@@ -118,6 +119,7 @@ void TurnMatcher::compare(const Change& change) {
   const double edge = longest_s_ + kGrid;
   if (!turned_at(t0 - edge) || !turned_at(t1 + edge)) return;
   const double y = so3::wrap(change.after.course - change.before.course);
+  if (std::abs(y) > kFastestTurn * (t1 - t0)) return;
   for (std::size_t i = 0; i < sums_.size(); ++i) {
     const double offset = step_s_ * static_cast<double>(i) - longest_s_;
     const double x = *turned_at(t1 + offset) - *turned_at(t0 + offset);

@@ -70,7 +70,11 @@ TEST_F(ImuGuardTest, AStraightLineWithoutNoiseWasInterpolated) {
 /// Values that stand still are coarse sensors at rest; those without noise all along a simulation.
 TEST_F(ImuGuardTest, RestOfACoarseSensorIsUsed) {
   used(0, 500, [&](int64_t k) { return rough(k); });
-  EXPECT_EQ(used(500, 700, [&](int64_t k) { return increment(k, {}, {0, 0, -9.8}); }), 200);
+  EXPECT_EQ(used(500, 700,
+                 [&](int64_t k) {
+                   return increment(k, Vector3d::Zero(), {0, 0, -9.8});
+                 }),
+            200);
 }
 
 TEST_F(ImuGuardTest, SmoothMotionWithoutNoiseIsUsed) {
@@ -79,6 +83,16 @@ TEST_F(ImuGuardTest, SmoothMotionWithoutNoiseIsUsed) {
                    const double t = 0.01 * static_cast<double>(k);
                    const Vector3d wave(std::sin(t), std::cos(0.7 * t), std::sin(0.3 * t));
                    return increment(k, 0.2 * wave, Vector3d(0, 0, -9.8) + wave);
+                 }),
+            3000);
+}
+
+TEST_F(ImuGuardTest, CornersWithoutNoiseAreUsed) {
+  EXPECT_EQ(used(0, 3000,
+                 [&](int64_t k) {
+                   const double t = 0.01 * static_cast<double>(k % 100);
+                   const double ramp = k / 100 % 2 == 0 ? t : 1 - t;
+                   return increment(k, Vector3d::Constant(ramp), Vector3d::Constant(-9.8 - ramp));
                  }),
             3000);
 }

@@ -16,6 +16,11 @@ using Record = std::variant<GnssFix, WheelSpeed, ReferencePose, ImuSample, ImuIn
 
 int64_t stamp(const Record& record);
 
+enum class WrittenValues {
+  finite,  ///< others are refused
+  any,     ///< for logs that shall be bad
+};
+
 /// Writes an observation-only rawlog, gzip-compressed, in the order of the calls.
 ///
 /// CObservationIMU: rates; an increment becomes its mean rates at its end, so that a reader with
@@ -34,7 +39,8 @@ int64_t stamp(const Record& record);
 /// or a stamp outside the years 1950 to 2150.
 class RawlogWriter {
  public:
-  explicit RawlogWriter(const std::string& path, const Mounting& mounting = {});
+  explicit RawlogWriter(const std::string& path, const Mounting& mounting = {},
+                        WrittenValues values = WrittenValues::finite);
   ~RawlogWriter();
   RawlogWriter(RawlogWriter&&) noexcept;
 

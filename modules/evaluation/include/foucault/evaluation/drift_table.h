@@ -15,6 +15,7 @@ struct TextTable {
   std::string title;
   std::vector<std::string> header;
   std::vector<std::vector<std::string>> rows;  ///< as long as the header
+  bool ends_in_words = false;                  ///< the last column, too, is to the left in Markdown
 };
 
 /// RFC 4180: cells with commas, quotes or line ends are quoted.

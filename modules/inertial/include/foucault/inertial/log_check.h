@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "foucault/core/interfaces.h"
+#include "foucault/core/result.h"
 #include "foucault/inertial/imu_noise.h"
 #include "foucault/inertial/turn_match.h"
 
@@ -66,6 +67,8 @@ class LogChecker {
   LogFacts facts() const;
   /// Everything that was looked at, also what is well.
   std::vector<Finding> findings() const;
+  /// Those that are not well, stamped where the IMU begins.
+  std::vector<Notice> warnings() const;
 
  private:
   class Impl;
