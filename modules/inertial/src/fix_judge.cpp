@@ -150,9 +150,11 @@ FixJudge::Decision FixJudge::reject(const GnssFix& fix, const Innovation& innova
     return believe(fix);
   }
   if (!doubt_) {
-    doubt_.emplace();
-    doubt_->begin_ns = fix.t_ns;
-    doubt_->begin = navigator.epoch();
+    Doubt doubt;
+    doubt.begin_ns = doubt.from_ns = fix.t_ns;
+    doubt.begin = navigator.epoch();
+    doubt.begin_variance_n = innovation.covariance.diagonal();
+    doubt_ = doubt;
   }
   ++doubt_->left_out;
   if (seconds_between(doubt_->begin_ns, fix.t_ns) > kLongestDoubt) return restart(fix);
@@ -185,31 +187,33 @@ FixJudge::Decision FixJudge::look_at(const GnssFix& fix, const Navigator& naviga
     remember(*doubt_);
     return believe(fix);
   }
-  InnovationLine line = fit();
+  const InnovationLine line = fit();
   if (lies_on(line)) {
-    const Vector3d sigma =
-        (line.rate_variance_n + velocity_variance(navigator.epoch())).cwiseSqrt();
-    doubt_->drifts = (line.rate_n.cwiseAbs() - 4 * sigma).maxCoeff() > 0;
-    doubt_->line = line;
-    doubt_->noticed = true;
-    Decision decision = leave_out(fix);
-    decision.notice =
-        doubt_->drifts
-            ? fmt::format(
-                  "fixes since {} drift away by {:.2f} m/s, which the IMU excludes; used "
-                  "without the drift",
-                  when(doubt_->begin_ns), line.rate_n.norm())
-            : fmt::format(
-                  "fixes since {} are off by {:.2f} m; used without that until it stays "
-                  "for {:.0f} s",
-                  when(doubt_->begin_ns), line.offset_n.norm(), kJumpStays);
-    return decision;
+    doubt_->drifts = drifts(line, navigator);
+    if (!doubt_->drifts || goes_on(line)) return doubt_fixes(fix, line);
+    return restart(fix);
   }
   return is_smooth() ? restart(fix) : leave_out(fix);
 }
 
+FixJudge::Decision FixJudge::doubt_fixes(const GnssFix& fix, const InnovationLine& line) {
+  doubt_->line = line;
+  doubt_->noticed = true;
+  Decision decision = leave_out(fix);
+  decision.notice =
+      doubt_->drifts
+          ? fmt::format(
+                "fixes since {} drift away by {:.2f} m/s, which the IMU excludes; used without the "
+                "drift",
+                when(doubt_->begin_ns), line.rate_n.norm())
+          : fmt::format(
+                "fixes since {} are off by {:.2f} m; used without that until it stays for {:.0f} s",
+                when(doubt_->begin_ns), line.offset_n.norm(), kJumpStays);
+  return decision;
+}
+
 FixJudge::Decision FixJudge::follow_line(const GnssFix& fix, const Innovation& innovation) {
-  const InnovationLine& line = *doubt_->line;
+  const InnovationLine line = *doubt_->line;
   if (!doubt_->drifts && seconds_between(doubt_->begin_ns, fix.t_ns) > kJumpStays) {
     Decision decision = believe(fix);
     decision.action = Action::move_state;
@@ -224,6 +228,8 @@ FixJudge::Decision FixJudge::follow_line(const GnssFix& fix, const Innovation& i
   const Eigen::Matrix3d S = innovation.covariance + Eigen::Matrix3d(variance_n.asDiagonal());
   if (!passes(normalized_square(innovation.value_n - error_n, S))) {
     if (++doubt_->line_missed >= kMissesThatEndLine) {
+      doubt_->from_ns = fix.t_ns;
+      doubt_->from_n = line.at(fix.t_ns);
       doubt_->line.reset();
       doubt_->line_missed = 0;
       doubt_->recent.clear();
@@ -320,6 +326,23 @@ bool FixJudge::lies_on(const InnovationLine& line) const {
   const double bend = acceleration_sigma(doubt_->begin) * span * span / 16;
   const Vector3d limit = 2 * variance.cwiseSqrt() + 3 * bend * Vector3d::Ones();
   return (squares.cwiseSqrt() - limit).maxCoeff() <= 0;
+}
+
+/// By more than the line and the state's velocity are uncertain.
+bool FixJudge::drifts(const InnovationLine& line, const Navigator& navigator) const {
+  const Vector3d sigma = (line.rate_variance_n + velocity_variance(navigator.epoch())).cwiseSqrt();
+  return (line.rate_n.cwiseAbs() - 4 * sigma).maxCoeff() > 0;
+}
+
+/// From nothing, up to where the gate took notice, or from the line before it; and the way of some
+/// fixes.
+bool FixJudge::goes_on(const InnovationLine& line) const {
+  constexpr double kGateSigmas = 8;
+  const std::deque<Rejected>& recent = doubt_->recent;
+  const double way = kMissesThatEndLine * seconds_between(recent[0].t_ns, recent[1].t_ns);
+  const Vector3d most = kGateSigmas * std::sqrt(level()) * doubt_->begin_variance_n.cwiseSqrt() +
+                        way * line.rate_n.cwiseAbs();
+  return ((line.at(doubt_->from_ns) - doubt_->from_n).cwiseAbs() - most).maxCoeff() <= 0;
 }
 
 /// By the ratio of von Neumann: 2 for noise, 0 for what is smooth.

@@ -33,11 +33,12 @@ struct InnovationLine {
 /// that does not pass is left out, and the IMU's covariance grows until it passes or until enough
 /// fixes show what it is:
 /// - they scatter about the prediction: their sigmas are too small, and they are believed;
-/// - they lie on a line, an offset that is constant or grows steadily: while the IMU holds velocity
-///   to cm/s, that is an error of the fixes, and they are used without it. A constant one that
-///   stays for kJumpStays is the truth, and the state moves there; a growing one for kLongestDoubt
-///   at most;
-/// - they leave the prediction smoothly on any other way: the state is wrong, and starts again at
+/// - they lie on a line, an offset that is constant or grows steadily from nothing: while the IMU
+///   holds velocity to cm/s, that is an error of the fixes, and they are used without it. A
+///   constant one that stays for kJumpStays is the truth, and the state moves there; a growing one
+///   for kLongestDoubt at most;
+/// - they leave the prediction smoothly on any other way, or by a jump and then steadily, as when
+///   they return from an error that the state has followed: the state is wrong, and starts again at
 ///   the fixes with velocity and attitude loosened by what they show;
 /// - they scatter wildly: waited for better ones, for kLongestDoubt at most.
 /// Where the state itself is in doubt (after the alignment, holes and faults of the IMU) a few
@@ -79,7 +80,10 @@ class FixJudge {
   /// A time in which fixes do not pass the gate.
   struct Doubt {
     int64_t begin_ns = 0;
-    Epoch begin;  ///< the state there
+    Epoch begin;                                                 ///< the state there
+    Eigen::Vector3d begin_variance_n = Eigen::Vector3d::Zero();  ///< of the innovation there
+    int64_t from_ns = 0;                                         ///< of the first of recent
+    Eigen::Vector3d from_n = Eigen::Vector3d::Zero();  ///< what the last line came to there
     int64_t left_out = 0;
     std::deque<Rejected> recent;
     std::optional<InnovationLine> line;
@@ -96,11 +100,14 @@ class FixJudge {
   Decision reject(const GnssFix& fix, const Innovation& innovation, const Navigator& navigator);
   Decision follow_line(const GnssFix& fix, const Innovation& innovation);
   Decision look_at(const GnssFix& fix, const Navigator& navigator);
+  Decision doubt_fixes(const GnssFix& fix, const InnovationLine& line);
   Decision leave_out(const GnssFix& fix);
   Decision restart(const GnssFix& fix);
   InnovationLine fit() const;
   bool scatters_about_zero() const;
   bool lies_on(const InnovationLine& line) const;
+  bool drifts(const InnovationLine& line, const Navigator& navigator) const;
+  bool goes_on(const InnovationLine& line) const;
   bool is_smooth() const;
 
   GnssOptions options_;
