@@ -54,9 +54,9 @@ class FaultObserver : public Sink {
   std::optional<ReferenceComparison> comparison_;
 };
 
-/// What `foucault run` does with a log, and says.
-void process(const std::string& log, const std::string& method, const Settings& settings,
-             FaultObserver& observer) {
+/// What `foucault run` does with a log, and says. Returns why the log broke off, if it did.
+std::optional<std::string> process(const std::string& log, const std::string& method,
+                                   const Settings& settings, FaultObserver& observer) {
   RawlogSource source(log, settings.imu.sample_kind(), settings.rawlog);
   observer.place(source.mounting());
   const std::unique_ptr<Estimator> estimator =
@@ -72,7 +72,7 @@ void process(const std::string& log, const std::string& method, const Settings& 
   estimator->finish();
   for (const Notice& notice : source.notices()) observer.notice(notice);
   for (const Notice& notice : checker.warnings()) observer.notice(notice);
-  if (source.damage()) throw DataError(*source.damage());
+  return source.damage();
 }
 
 double end_of(const FaultCase& fault) {
@@ -83,14 +83,16 @@ double end_of(const FaultCase& fault) {
   return end;
 }
 
-void add_errors(const std::vector<FaultObserver::Error>& errors, int64_t fault_end_ns,
-                FaultOutcome& outcome) {
+void add_errors(const FaultCase& fault, const std::vector<FaultObserver::Error>& errors,
+                const ScenarioOptions& scenario, FaultOutcome& outcome) {
   if (errors.empty()) return;
   const int64_t settled_ns = errors.front().t_ns + nanoseconds(kSettled);
   double squares = 0;
+  const int64_t fault_end_ns = scenario.start_ns() + nanoseconds(end_of(fault));
+  const double recovered = kRecoveredSigmas * fault.sigma_m.value_or(scenario.gnss_sigma_m.x());
   int64_t count = 0, last_bad_ns = fault_end_ns;
   for (const FaultObserver::Error& error : errors) {
-    if (!(error.horizontal < kRecovered)) last_bad_ns = std::max(last_bad_ns, error.t_ns);
+    if (!(error.horizontal < recovered)) last_bad_ns = std::max(last_bad_ns, error.t_ns);
     if (error.t_ns < settled_ns) continue;
     squares += error.horizontal * error.horizontal;
     outcome.largest_m = std::max(outcome.largest_m, error.horizontal);
@@ -98,7 +100,7 @@ void add_errors(const std::vector<FaultObserver::Error>& errors, int64_t fault_e
   }
   outcome.errors = count;
   if (count > 0) outcome.rms_m = std::sqrt(squares / static_cast<double>(count));
-  if (errors.back().horizontal < kRecovered) {
+  if (errors.back().horizontal < recovered) {
     outcome.recovery_s = seconds_between(fault_end_ns, last_bad_ns);
   }
 }
@@ -127,16 +129,17 @@ FaultOutcome run_method(const FaultCase& fault, const std::string& method, const
   outcome.method = method;
   outcome.seed = seed;
   try {
-    process(log, method, settings, observer);
-    outcome.message = message_of(observer.notices);
-  } catch (const DataError& error) {
+    const std::optional<std::string> damage = process(log, method, settings, observer);
+    outcome.exit_code = damage ? 1 : 0;
+    outcome.message = damage ? shortened(*damage, log) : message_of(observer.notices);
+  } catch (const DataError& error) {  // nothing comes out
     outcome.exit_code = 1;
     outcome.message = shortened(error.what(), log);
+    return outcome;
   }
   outcome.used = observer.used;
   outcome.rejected = observer.rejected;
-  add_errors(observer.errors, fault_scenario(seed).start_ns() + nanoseconds(end_of(fault)),
-             outcome);
+  add_errors(fault, observer.errors, fault_scenario(seed), outcome);
   return outcome;
 }
 

@@ -28,12 +28,11 @@ struct FaultOutcome {
   double rms_m = 0;      ///< horizontal error, from 60 s after the alignment on
   double largest_m = 0;  ///< its largest
   /// From the end of the fault (or its start, if it does not end) until the error stays below
-  /// kRecovered; none if it does not before the end, or there are no errors to tell.
+  /// kRecoveredSigmas of a fix; none if it does not before the end, or nothing came out.
   std::optional<double> recovery_s;
 };
 
-/// Horizontal error that counts as recovered [m]: 10 sigmas of a fix.
-constexpr double kRecovered = 0.1;
+constexpr double kRecoveredSigmas = 10;
 
 /// Writes the trip with its fault to `log`, processes it with each method as `foucault run` does,
 /// and removes it.

@@ -19,9 +19,11 @@ void count(const Measurement& measurement, SimulationCounts& counts) {
 }
 
 std::unique_ptr<Source> make_source(const SimulationSettings& settings, const FaultCase& fault) {
-  auto source = std::make_unique<SimulatedSource>(settings.scenario, settings.imu.noise());
+  ScenarioOptions scenario = settings.scenario;
+  if (fault.sigma_m) scenario.gnss_sigma_m = {*fault.sigma_m, *fault.sigma_m, 2 * *fault.sigma_m};
+  auto source = std::make_unique<SimulatedSource>(scenario, settings.imu.noise());
   if (fault.faults.empty()) return source;
-  return std::make_unique<FaultySource>(std::move(source), fault.faults, settings.scenario.seed);
+  return std::make_unique<FaultySource>(std::move(source), fault.faults, scenario.seed);
 }
 
 }  // namespace

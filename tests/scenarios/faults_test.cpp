@@ -53,6 +53,16 @@ TEST_F(Faults, ADriftOfTheFixesIsNotFollowed) {
   }
 }
 
+/// Slower than the gate sees: it is followed, but what is true again is believed within seconds.
+TEST_F(Faults, AFollowedDriftIsLeftAtOnce) {
+  for (const FaultOutcome& outcome : run("ramp_coarse")) {
+    EXPECT_LT(outcome.largest_m, 25) << outcome.method;
+    EXPECT_LT(outcome.rms_m, 6) << outcome.method;  // 20 when the way back is taken for a drift
+    ASSERT_TRUE(outcome.recovery_s.has_value());
+    EXPECT_LT(*outcome.recovery_s, 15);
+  }
+}
+
 TEST_F(Faults, AJumpIsBelievedOnlyIfItStays) {
   for (const FaultOutcome& away : run("jump")) EXPECT_LT(away.largest_m, 2);
   for (const FaultOutcome& back : run("jump_back")) {
