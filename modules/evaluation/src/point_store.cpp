@@ -167,11 +167,17 @@ std::size_t PointStore::size() const {
   return rows_.size();
 }
 
+/// Of a line that does not get through nothing stays, for others to be added.
 void PointStore::write(const std::string& text) {
+  const off_t begin = lseek(file_, 0, SEEK_CUR);
   for (std::size_t done = 0; done < text.size();) {
     const ssize_t count = ::write(file_, text.data() + done, text.size() - done);
     if (count < 0 && errno == EINTR) continue;
-    if (count < 0) fail(std::strerror(errno));
+    if (count < 0) {
+      const int why = errno;
+      if (ftruncate(file_, begin) == 0) lseek(file_, begin, SEEK_SET);
+      fail(std::strerror(why));
+    }
     done += static_cast<std::size_t>(count);
   }
   if (fdatasync(file_) != 0) fail(std::strerror(errno));

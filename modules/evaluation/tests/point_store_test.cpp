@@ -2,7 +2,9 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <signal.h>
 #include <stdlib.h>
+#include <sys/resource.h>
 
 #include <filesystem>
 #include <fstream>
@@ -98,6 +100,23 @@ TEST_F(PointStoreTest, RefusesDamage) {
 TEST_F(PointStoreTest, OneAtATime) {
   const PointStore store(path_, kFingerprints, kHeader, 2);
   EXPECT_THAT(refusal(), HasSubstr("another process"));
+}
+
+/// A file that must not grow by more than half a line.
+TEST_F(PointStoreTest, ALineIsThereWholeOrNotAtAll) {
+  PointStore store(path_, kFingerprints, kHeader, 2);
+  const std::string before = text();
+  rlimit old;
+  getrlimit(RLIMIT_FSIZE, &old);
+  const rlimit tight{before.size() + 4, old.rlim_max};
+  const auto handler = signal(SIGXFSZ, SIG_IGN);
+  setrlimit(RLIMIT_FSIZE, &tight);
+  EXPECT_THROW(store.add({"ekf", "1"}, {"5"}), DataError);
+  setrlimit(RLIMIT_FSIZE, &old);
+  signal(SIGXFSZ, handler);
+  EXPECT_EQ(text(), before);
+  store.add({"ekf", "2"}, {"6"});
+  EXPECT_EQ(text(), before + "ekf,2,6\n");
 }
 
 TEST_F(PointStoreTest, SaysWhatCannotBeWritten) {
