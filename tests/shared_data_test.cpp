@@ -152,6 +152,7 @@ TEST_F(SharedData, AerobaticsStayTogether) {
 /// so.
 TEST_F(SharedData, LocalFrameWithAPlaceInTheMappingAndHiddenSplices) {
   import_with("kitti_drive0027_oxts", "kitti_drive0027_oxts");
+  EXPECT_NE(foucault({"check", log()}).out.find("interpolated over lost data"), std::string::npos);
   for (const std::string method : {"refined", "ekf"}) {
     const Outcome outcome =
         foucault({"run", log(), "--method", method, "--config", config("tactical_instantaneous"),

@@ -23,7 +23,8 @@ struct FaultCase {
   std::string title;  ///< what is injected, in words
   std::vector<Fault> faults;
   FileDamage damage = FileDamage::none;
-  std::optional<double> sigma_m;  ///< of the fixes, horizontal and twice that down; else the trip's
+  std::optional<double>
+      sigma_m{};  ///< of the fixes, horizontal and twice that down; else the trip's
 };
 
 /// All of them, the clean recording first. Those of the middle begin at kFaultStart.

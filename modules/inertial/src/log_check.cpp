@@ -13,6 +13,7 @@
 #include "foucault/core/time.h"
 #include "foucault/geodesy/local_frame.h"
 #include "foucault/inertial/time_mismatch.h"
+#include "imu_guard.h"
 #include "plausibility.h"
 
 namespace foucault {
@@ -292,6 +293,14 @@ void judge_stream(const StreamFacts& stream, const std::string& name, double lon
   }
 }
 
+constexpr const char* kSamples = "IMU samples";
+
+void judge_samples(const LogFacts& facts, Judgement& out) {
+  for (const std::string& line : facts.bad_samples) {
+    out.warn(kSamples, line, "`foucault run` bridges what is missing; find out why it is");
+  }
+}
+
 void judge_overlap(const LogFacts& facts, Judgement& out) {
   if (facts.imu.count == 0 || facts.gnss.count == 0) return;
   const double later = seconds_between(facts.imu.first_ns, facts.gnss.first_ns);
@@ -442,6 +451,7 @@ class LogChecker::Impl {
       : configured(noise), q_v_b_(mounting.q_v_b.normalized()) {}
 
   void add(const ImuIncrement& increment) {
+    guard_.look_at(increment);
     if (!increment.dvel_b.allFinite() || !increment.dtheta_b.allFinite()) return;
     if (increment.t_end_ns <= imu_.facts().last_ns && imu_.facts().count > 0) return;
     imu_.add(increment.t_end_ns);
@@ -485,6 +495,7 @@ class LogChecker::Impl {
     facts.rest = rest_.facts();
     facts.turns = turns();
     facts.acceleration_match = acceleration_.correlation();
+    facts.bad_samples = guard_.summary();
     return facts;
   }
 
@@ -502,6 +513,7 @@ class LogChecker::Impl {
   StreamWatch imu_, gnss_;
   RestWatch rest_;
   AccelerationMatch acceleration_;
+  ImuGuard guard_;
   TurnMatcher fine_{1.0, 0.02}, coarse_{25, 0.25};
   Vector3d force_sum_b_ = Vector3d::Zero();
   double force_time_ = 0;
@@ -526,7 +538,7 @@ std::vector<Finding> LogChecker::findings() const { return judge(facts(), impl_-
 std::vector<Notice> LogChecker::warnings() const {
   std::vector<Notice> warnings;
   for (const Finding& finding : findings()) {
-    if (finding.severity == Severity::ok) continue;
+    if (finding.severity == Severity::ok || finding.subject == kSamples) continue;
     warnings.push_back({facts().imu.first_ns, NoticeKind::skipped,
                         fmt::format("{}: {} ({})", finding.subject, finding.text, finding.remedy)});
   }
@@ -538,6 +550,7 @@ std::vector<Finding> judge(const LogFacts& facts, const ImuNoise& configured) {
   Judgement out;
   judge_stream(facts.imu, "IMU", kImuHole, out);
   judge_stream(facts.gnss, "GNSS", kGnssHole, out);
+  judge_samples(facts, out);
   judge_overlap(facts, out);
   judge_sigmas(facts, out);
   judge_lever_arm(facts, out);
