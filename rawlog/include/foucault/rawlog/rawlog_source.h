@@ -60,9 +60,9 @@ struct SourceCounts {
 /// out, then next() gives none and damage() says what and where.
 ///
 /// Throws DataError, one line naming the file, for: missing, a directory, empty, not a rawlog, no
-/// IMU, no GNSS, damage before the first of either, more than 100 IMU samples in a row that come too late
-/// (record number and stamp), IMU and GNSS that do not overlap in time or fixes that are all late
-/// (when the log ends).
+/// IMU, no GNSS, damage before the first of either, more than 100 IMU samples in a row that come
+/// too late (record number and stamp), IMU and GNSS that do not overlap in time or fixes that are
+/// all late (when the log ends).
 class RawlogSource : public Source {
  public:
   explicit RawlogSource(const std::string& path, SampleKind samples = SampleKind::interval_mean,
