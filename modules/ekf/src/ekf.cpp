@@ -144,6 +144,19 @@ void EkfNavigator::update(const GnssFix& fix) {
   if (use_velocity_ && fix.velocity_n) apply(velocity_observation(fix));
 }
 
+void EkfNavigator::loosen(const Matrix15d& added) {
+  catch_up();
+  covariance_.topLeftCorner<error_state::kSize, error_state::kSize>() += added;
+}
+
+/// A filter, whatever this leaves beside its estimate.
+std::unique_ptr<Navigator> EkfNavigator::ahead(double scale) const {
+  auto copy = std::make_unique<EkfNavigator>(*this);
+  copy->catch_up();
+  copy->covariance_ *= scale * scale;
+  return copy;
+}
+
 void EkfNavigator::apply(const Observation& o) {
   const StageTimer timer(Stage::update);
   using Gain = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::ColMajor, ekf::kSizeWithScale, 3>;

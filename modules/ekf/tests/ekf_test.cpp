@@ -374,5 +374,43 @@ TEST(EkfOptions, FieldsAreReadFromTheirKeys) {
   EXPECT_DOUBLE_EQ(noise.gyro_scale_sigma, 3e-4);
 }
 
+TEST(Ekf, OneAheadIsTheFilterWithOtherSigmas) {
+  Fixture fixture;
+  EkfNavigator filter = fixture.navigator();
+  const std::unique_ptr<Navigator> doubtful = filter.ahead(2);
+  EXPECT_LT((doubtful->epoch().covariance - 4 * fixture.prior).norm(), 1e-12);
+  for (const ImuIncrement& increment : fixture.trip.increments()) {
+    filter.propagate(increment);
+    doubtful->propagate(increment);
+  }
+  const std::unique_ptr<Navigator> ahead = filter.ahead(1);
+  const GnssFix fix = fixture.trip.exact_fix(filter.epoch().t_ns, {0.03, 0.02, 0.05});
+  EXPECT_EQ(ahead->innovation(fix).value_n, filter.innovation(fix).value_n);
+  EXPECT_LT((doubtful->innovation(fix).value_n - filter.innovation(fix).value_n).norm(), 1e-9);
+  const Epoch before = filter.epoch();
+  ahead->update(fix);
+  EXPECT_EQ(filter.epoch().covariance, before.covariance);
+}
+
+/// What is learned beside the fifteen states stays, and so do correlations.
+TEST(Ekf, LooseningAddsAndForgetsNothing) {
+  Fixture fixture;
+  EkfOptions options;
+  options.scale_factors = true;
+  EkfNavigator filter = fixture.navigator(options);
+  for (const ImuIncrement& increment : fixture.trip.increments()) filter.propagate(increment);
+  filter.update(fixture.trip.exact_fix(filter.epoch().t_ns, {0.03, 0.02, 0.05}));
+  const Matrix before = filter.covariance();
+  const FullState state = filter.state();
+  Matrix15d added = Matrix15d::Zero();
+  added.diagonal().head<3>() = Eigen::Vector3d(1, 4, 9);
+  filter.loosen(added);
+  Matrix expected = before;
+  expected.topLeftCorner<15, 15>() += added;
+  EXPECT_EQ(filter.covariance(), expected);
+  EXPECT_GT(before.block(0, ekf::kGyroScale, 15, 6).cwiseAbs().maxCoeff(), 0);
+  EXPECT_EQ(filter.state().gyro_scale, state.gyro_scale);
+}
+
 }  // namespace
 }  // namespace foucault

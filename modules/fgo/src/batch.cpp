@@ -136,8 +136,7 @@ void BatchRecorder::start(const Epoch& initial) {
   if (!frame_) frame_.emplace(initial.position);
   integrator_.reset();
   BatchChain& chain = chains_.emplace_back();
-  const Matrix15d covariance = turned(initial.covariance, frame_->R_w_n(initial.position));
-  chain.prior = prior_from_covariance(to_node(initial, *frame_, model_), covariance);
+  chain.prior = prior_from_covariance(to_node(initial, *frame_, model_), covariance_w(initial));
   add_node(initial);
 }
 
@@ -159,6 +158,26 @@ void BatchRecorder::update(const GnssFix& fix) {
   passage.filtered_bias = now.bias;
   passage.p_b_a = fix.p_b_a;
   begin_interval(now);
+}
+
+Matrix15d BatchRecorder::covariance_w(const Epoch& now) const {
+  return turned(now.covariance, frame_->R_w_n(now.position));
+}
+
+/// The interval that ends here gets the noise, or the prior if none does.
+void BatchRecorder::loosen(const Matrix15d& added) {
+  mark();
+  forward_->loosen(added);
+  BatchChain& chain = chains_.back();
+  const Epoch now = forward_->epoch();
+  if (chain.intervals.empty()) {
+    chain.prior = prior_from_covariance(chain.nodes.back().x, covariance_w(now));
+    return;
+  }
+  const NodeState& before = chain.nodes[chain.nodes.size() - 2].x;
+  const MotionResidual m = unwhitened(chain.intervals.back(), before, chain.nodes.back().x);
+  const Matrix15d added_w = turned(added, frame_->R_w_n(now.position));
+  foucault::loosen(chain.intervals.back(), m.J_x1 * added_w * m.J_x1.transpose());
 }
 
 void BatchRecorder::hold() {

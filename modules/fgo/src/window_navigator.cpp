@@ -29,18 +29,38 @@ WindowNavigator::WindowNavigator(const FgoOptions& options, PreintegrationModel 
 WindowNavigator::~WindowNavigator() = default;
 
 void WindowNavigator::start(const Epoch& initial) {
-  nodes_.clear();
-  intervals_.clear();
   integrator_.reset();
   frame_.emplace(initial.position);
+  begin_window(initial.t_ns, to_node(initial, *frame_, model_),
+               turned(initial.covariance, frame_->R_w_n(initial.position)));
+}
 
+/// A window of one node.
+void WindowNavigator::begin_window(int64_t t_ns, const NodeState& x, const Matrix15d& covariance) {
+  nodes_.clear();
+  intervals_.clear();
   Node& node = nodes_.emplace_back();
-  node.t_ns = initial.t_ns;
-  node.x = to_node(initial, *frame_, model_);
-  covariance_ = turned(initial.covariance, frame_->R_w_n(initial.position));
+  node.t_ns = t_ns;
+  node.x = x;
+  covariance_ = covariance;
   prior_ = prior_from_covariance(node.x, covariance_);
   linearize(0);
   begin_interval();
+}
+
+void WindowNavigator::loosen(const Matrix15d& added) {
+  const Prediction now = prediction();
+  const Eigen::Matrix3d R_w_n = frame_->R_w_n(frame_->to_geodetic(now.x.p_w_b));
+  begin_window(integrator_->t_end_ns(), now.x, now.covariance + turned(added, R_w_n));
+}
+
+std::unique_ptr<Navigator> WindowNavigator::ahead(double scale) const {
+  const Prediction now = prediction();
+  auto copy = std::make_unique<WindowNavigator>(options_, model_, noise_);
+  copy->frame_ = frame_;
+  copy->integrator_ = integrator_;  // for the increment before the first
+  copy->begin_window(integrator_->t_end_ns(), now.x, scale * scale * now.covariance);
+  return copy;
 }
 
 void WindowNavigator::begin_interval() {

@@ -222,5 +222,39 @@ TEST_F(BatchTest, ANewStartIsANewChain) {
   }
 }
 
+/// Fixes of the second half are 5 m off the first: a jump that no motion explains.
+TEST_F(BatchTest, LooseningBridgesAJumpOfTheState) {
+  const auto largest_postfit = [&](bool loosened) {
+    reseed(4);
+    const std::unique_ptr<BatchRecorder> batch = recorder();
+    batch->start(initial(0.1));
+    std::vector<GnssFix> fixes;
+    for (int second = 1; second <= 20; ++second) {
+      for (int64_t t = (second - 1) * 1'000'000'000LL; t < second * 1'000'000'000LL;
+           t += 10'000'000)
+        batch->propagate(noisy_increment(t, t + 10'000'000));
+      GnssFix fix = fix_at(second, 0.02);
+      if (second > 10) fix.antenna = LocalFrame(fix.antenna).to_geodetic({5, 0, 0});
+      if (second == 11 && loosened) {
+        Matrix15d added = Matrix15d::Zero();
+        added.diagonal().head<3>().setConstant(25);
+        batch->loosen(added);
+      }
+      batch->update(fix);
+      fixes.push_back(fix);
+    }
+    const std::vector<SmoothedEpoch> nodes = batch->smoothed();
+    double largest = 0;
+    for (std::size_t k = 0; k < fixes.size(); ++k) {
+      const Epoch& epoch = nodes[k + 1].epoch;
+      const Vector3d antenna_n = LocalFrame(epoch.position).to_local(fixes[k].antenna);
+      largest = std::max(largest, (antenna_n - epoch.q_n_b * fixes[k].p_b_a).norm());
+    }
+    return largest;
+  };
+  EXPECT_LT(largest_postfit(true), 0.1);
+  EXPECT_GT(largest_postfit(false), 1);
+}
+
 }  // namespace
 }  // namespace foucault

@@ -255,5 +255,48 @@ TEST_F(WindowNavigatorTest, ALargeBiasIsIntegratedAnew) {
   EXPECT_LT(e.head<3>().norm(), 0.1);
 }
 
+TEST_F(WindowNavigatorTest, OneAheadForeseesWhatItselfWillSay) {
+  WindowNavigator navigator(window_of(10), PreintegrationModel::refined, test_noise());
+  navigator.start(initial(1));
+  run(navigator, 12, 99, 99, [](int) {});
+  navigator.propagate(noisy_increment(12'000'000'000, 12'010'000'000));
+  const Epoch before = navigator.epoch();
+  const std::unique_ptr<Navigator> ahead = navigator.ahead(1);
+  const std::unique_ptr<Navigator> doubtful = navigator.ahead(3);
+  for (int64_t t = 12'010'000'000; t < 14'000'000'000; t += 10'000'000) {
+    const ImuIncrement increment = noisy_increment(t, t + 10'000'000);
+    for (Navigator* n : {static_cast<Navigator*>(&navigator), ahead.get(), doubtful.get()}) {
+      n->propagate(increment);
+    }
+  }
+  const GnssFix fix = fix_at(14, 0.02);
+  const Innovation own = navigator.innovation(fix);
+  EXPECT_LT((ahead->innovation(fix).value_n - own.value_n).norm(), 1e-6);
+  EXPECT_LT((ahead->innovation(fix).covariance - own.covariance).norm(),
+            1e-6 * own.covariance.norm());
+  EXPECT_LT((doubtful->innovation(fix).value_n - own.value_n).norm(), 1e-6);
+  ahead->update(fix);  // its own affair
+  EXPECT_EQ(navigator.innovation(fix).value_n, own.value_n);
+  // Three times the sigma, but for the noise of two seconds and of the fix.
+  const double grown = doubtful->epoch().covariance(kAttitude, kAttitude);
+  EXPECT_NEAR(grown / navigator.epoch().covariance(kAttitude, kAttitude), 9, 0.5);
+  EXPECT_EQ(before.t_ns, 12'010'000'000);
+}
+
+TEST_F(WindowNavigatorTest, WhatLoosensItIsAddedToItsCovariance) {
+  WindowNavigator navigator(window_of(10), PreintegrationModel::refined, test_noise());
+  navigator.start(initial(1));
+  run(navigator, 12, 10, 99, [](int) {});
+  const Epoch before = navigator.epoch();
+  Matrix15d added = Matrix15d::Zero();
+  added.diagonal().head<3>() = Vector3d(1, 4, 9);
+  navigator.loosen(added);
+  const Epoch after = navigator.epoch();
+  EXPECT_LT((after.covariance - before.covariance - added).norm(), 1e-6);
+  EXPECT_LT((error(after) - error(before)).norm(), 1e-6);
+  navigator.update(fix_at(12, 0.02));
+  EXPECT_LT(error(navigator.epoch()).head<3>().norm(), 0.1);
+}
+
 }  // namespace
 }  // namespace foucault

@@ -65,6 +65,13 @@ class FakeNavigator : public Navigator {
     log_.updates.push_back(fix);
     log_.add("update", ms_of(now_ns_));
   }
+  void loosen(const Matrix15d&) override { log_.add("loosen", ms_of(now_ns_)); }
+  std::unique_ptr<Navigator> ahead(double) const override {
+    static Log unseen;
+    auto copy = std::make_unique<FakeNavigator>(unseen, velocity_n_);
+    copy->now_ns_ = now_ns_;
+    return copy;
+  }
   void hold() override { log_.add("hold", ms_of(now_ns_)); }
   Epoch epoch() const override {
     Epoch epoch;

@@ -36,6 +36,8 @@ class EkfNavigator : public Navigator {
   void propagate(const ImuIncrement& increment) override;
   Innovation innovation(const GnssFix& fix) const override;
   void update(const GnssFix& fix) override;
+  void loosen(const Matrix15d& added) override;
+  std::unique_ptr<Navigator> ahead(double scale) const override;
   void hold() override {}
   Epoch epoch() const override;
 

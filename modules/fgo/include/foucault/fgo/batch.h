@@ -61,6 +61,8 @@ class BatchRecorder final : public Navigator, public Recording {
   void propagate(const ImuIncrement& increment) override;
   Innovation innovation(const GnssFix& fix) const override { return forward_->innovation(fix); }
   void update(const GnssFix& fix) override;
+  void loosen(const Matrix15d& added) override;
+  std::unique_ptr<Navigator> ahead(double scale) const override { return forward_->ahead(scale); }
   void hold() override;
   Epoch epoch() const override { return forward_->epoch(); }
 
@@ -77,6 +79,7 @@ class BatchRecorder final : public Navigator, public Recording {
     Eigen::Vector3d p_b_a = Eigen::Vector3d::Zero();
   };
 
+  Matrix15d covariance_w(const Epoch& now) const;
   void begin_interval(const Epoch& now);
   void close_interval();
   void add_node(const Epoch& now);
@@ -87,9 +90,9 @@ class BatchRecorder final : public Navigator, public Recording {
   PreintegrationModel model_;
   ImuNoise noise_;
 
-  std::optional<LocalFrame> frame_;          ///< at the first start
-  std::vector<BatchChain> chains_;           ///< one a start
-  std::vector<Passage> passages_;            ///< one a node, all chains
+  std::optional<LocalFrame> frame_;  ///< at the first start
+  std::vector<BatchChain> chains_;   ///< one a start
+  std::vector<Passage> passages_;    ///< one a node, all chains
   std::optional<Preintegrator> integrator_;  ///< from the newest node on
   ImuInterval open_;
   EarthModel earth_;

@@ -13,6 +13,7 @@ struct ImuInterval {
   std::vector<ImuIncrement> increments;  ///< kept to integrate again when the bias moves
   std::optional<ImuIncrement> before;    ///< the increment before the first
   std::unique_ptr<PreintegrationFactor> factor;
+  std::unique_ptr<Matrix15d> loosened;  ///< covariance beyond the IMU's, of the factor's residual
 };
 
 /// What the model takes from an integrator: in `full` the biases decay.
@@ -23,6 +24,14 @@ Preintegration measured(const Preintegrator& integrator, PreintegrationModel mod
 constexpr double kReintegrationAngle = 1e-3;  // [rad]
 
 bool bias_moved(const Preintegration& pre, const ImuBias& bias);
+
+/// The residual (49) between two states, not whitened.
+MotionResidual unwhitened(const ImuInterval& interval, const NodeState& begin,
+                          const NodeState& end);
+
+/// The motion may have been off by more than the IMU's noise: `added` comes to the covariance of
+/// the residual.
+void loosen(ImuInterval& interval, const Matrix15d& added);
 
 /// Integrates the interval again, at `bias`; there is a new factor then.
 void reintegrate(ImuInterval& interval, const ImuBias& bias, const ImuNoise& noise,

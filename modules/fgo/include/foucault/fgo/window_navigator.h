@@ -36,6 +36,9 @@ class WindowNavigator final : public Navigator {
   void propagate(const ImuIncrement& increment) override;
   Innovation innovation(const GnssFix& fix) const override;
   void update(const GnssFix& fix) override;
+  /// The window ends here: what it knows becomes the prior of a node at the current time.
+  void loosen(const Matrix15d& added) override;
+  std::unique_ptr<Navigator> ahead(double scale) const override;
   void hold() override;
   Epoch epoch() const override;
 
@@ -62,6 +65,7 @@ class WindowNavigator final : public Navigator {
     Matrix15d covariance;
   };
 
+  void begin_window(int64_t t_ns, const NodeState& x, const Matrix15d& covariance);
   void begin_interval();
   Prediction prediction() const;
   void add_node(const NodeState& x, const Preintegration& pre);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 
 #include "foucault/core/measurement.h"
 #include "foucault/core/result.h"
@@ -30,6 +31,16 @@ class Navigator {
 
   /// Uses a fix at the current time.
   virtual void update(const GnssFix& fix) = 0;
+
+  /// The state may be worse than its covariance says: `added` comes to it at the current time, in
+  /// the order of error_state, position and velocity in the local NED. Symmetric, positive
+  /// semidefinite. What is estimated beside these fifteen keeps its values and correlations.
+  virtual void loosen(const Matrix15d& added) = 0;
+
+  /// One that drives on from the present state by the same method, for trying out what follows, with
+  /// the sigmas of all that is estimated `scale` times what they are; correlations stay. This one is
+  /// not changed. The other leaves no nodes, and need not remember what came before.
+  virtual std::unique_ptr<Navigator> ahead(double scale) const = 0;
 
   /// No fix has come for node_interval: a factor graph adds a node here, a filter does nothing.
   virtual void hold() = 0;
