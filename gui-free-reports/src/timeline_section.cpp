@@ -17,8 +17,9 @@
 namespace foucault::reports {
 namespace {
 
-constexpr std::array<FixVerdict, 4> kRejections{FixVerdict::gated, FixVerdict::low_quality,
-                                                FixVerdict::bad_sigma, FixVerdict::out_of_order};
+constexpr std::array<FixVerdict, 5> kRejections{FixVerdict::gated, FixVerdict::corrected,
+                                                FixVerdict::low_quality, FixVerdict::bad_sigma,
+                                                FixVerdict::out_of_order};
 constexpr double kLaneHeight = 8.5;  // [mm]
 
 struct EventStyle {
@@ -73,6 +74,8 @@ const char* short_name(FixVerdict verdict) {
       return "bad sigma";
     case FixVerdict::gated:
       return "gated";
+    case FixVerdict::corrected:
+      return "corrected";
     case FixVerdict::low_quality:
       return "low quality";
     case FixVerdict::out_of_order:
@@ -87,13 +90,17 @@ std::string joined(const std::vector<std::string>& parts, const char* by) {
   return text;
 }
 
+size_t rejected_fixes(const RunData& data) {
+  return fixes(data) - count_of(data, FixVerdict::used) - count_of(data, FixVerdict::corrected);
+}
+
 std::string rejection_text(const RunData& data) {
   std::vector<std::string> kinds;
   for (const FixVerdict verdict : kRejections) {
     const size_t count = count_of(data, verdict);
-    if (count > 0) kinds.push_back(fmt::format("{} {}", count, short_name(verdict)));
+    if (count > 0 && verdict != FixVerdict::corrected) kinds.push_back(fmt::format("{} {}", count, short_name(verdict)));
   }
-  const size_t rejected = fixes(data) - count_of(data, FixVerdict::used);
+  const size_t rejected = rejected_fixes(data);
   return fmt::format("{} of {} rejected ({})", rejected, plural(fixes(data), "fix", "fixes"),
                      joined(kinds, ", "));
 }
@@ -120,7 +127,10 @@ size_t notices_of(const RunData& data, NoticeKind kind) {
 
 std::vector<std::string> happenings(const RunData& data) {
   std::vector<std::string> parts;
-  if (fixes(data) > count_of(data, FixVerdict::used)) parts.push_back(rejection_text(data));
+  if (rejected_fixes(data) > 0) parts.push_back(rejection_text(data));
+  if (const size_t count = count_of(data, FixVerdict::corrected); count > 0) {
+    parts.push_back(plural(count, "fix", "fixes") + " used less an error that lasts");
+  }
   const std::vector<Interval> gaps = unasked_gaps(data);
   if (!gaps.empty()) {
     parts.push_back(fmt::format("{} s without a usable fix in {}",
@@ -327,6 +337,8 @@ std::string verdict_name(FixVerdict verdict) {
       return "rejected: bad sigma";
     case FixVerdict::gated:
       return "rejected: too far from the prediction";
+    case FixVerdict::corrected:
+      return "used less an error that lasts";
     case FixVerdict::low_quality:
       return "rejected: quality too low";
     case FixVerdict::out_of_order:

@@ -130,6 +130,18 @@ ImuNoise ImuOptions::noise() const {
   return noise;
 }
 
+ImuOptions ImuOptions::scaled(double factor) const {
+  const ImuNoise n = noise();
+  ImuOptions out = *this;
+  out.arw_deg_sqrt_h = factor * n.gyro_noise_density / kDegPerSqrtHour;
+  out.vrw_m_s_sqrt_h = factor * n.accel_noise_density / kMPerSPerSqrtHour;
+  out.gyro_bias_deg_h = factor * n.gyro_bias_sigma / kDegPerHour;
+  out.accel_bias_mgal = factor * n.accel_bias_sigma / kMilliGal;
+  out.gyro_turn_on_deg_h = factor * n.gyro_turn_on_sigma / kDegPerHour;
+  out.accel_turn_on_mgal = factor * n.accel_turn_on_sigma / kMilliGal;
+  return out;
+}
+
 SampleKind ImuOptions::sample_kind() const {
   if (samples == "interval_mean") return SampleKind::interval_mean;
   if (samples == "instantaneous") return SampleKind::instantaneous;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "fix_doubt.h"
 #include "fix_judge.h"
 #include "fix_screen.h"
 #include "foucault/core/error.h"
@@ -250,6 +251,7 @@ void NavigationRun::start(const Epoch& aligned) {
   constexpr int64_t kSettling = 60 * kNanosecondsPerSecond;
   settled_ns_ = initial.t_ns + kSettling;
   judge_->start(initial.t_ns);
+  last_used_ns_ = initial.t_ns;
   navigator_->start(initial);
   emit_epoch();
 
@@ -285,6 +287,8 @@ void NavigationRun::realign(const ImuIncrement& next) {
 void NavigationRun::take(const Measurement& measurement) {
   if (!aligned_) {  // a hole found while replaying has ended the alignment
     align(measurement);
+  } else if (doubt_) {
+    look_beyond_doubt(measurement);
   } else if (hole_) {
     look_beyond_hole(measurement);
   } else if (const auto* increment = std::get_if<ImuIncrement>(&measurement)) {
@@ -317,7 +321,7 @@ void NavigationRun::take_increment(const ImuIncrement& increment) {
     meet_hole(rest);
     return;
   }
-  advance(rest);
+  if (!advance(rest)) return;
   recent_.add(rest);
   if (options_.rate == EpochRate::imu) emit_epoch();
 }
@@ -370,15 +374,19 @@ void NavigationRun::leave_hole() {
   if (noticeable) judge_->doubt_state(hole->after.t_begin_ns);
   // Fixes in the hole came before its end was known; those after it wait their turn.
   const int64_t step_ns = hole->after.t_end_ns - hole->after.t_begin_ns;
-  while (time_ns_ < hole->after.t_begin_ns) {
-    const int64_t end_ns = std::min(time_ns_ + step_ns, hole->after.t_begin_ns);
-    advance(made_up_increment(*hole, options_.gaps, time_ns_, end_ns));
+  std::vector<ImuIncrement> made_up;
+  for (int64_t begin_ns = time_ns_; begin_ns < hole->after.t_begin_ns;) {
+    const int64_t end_ns = std::min(begin_ns + step_ns, hole->after.t_begin_ns);
+    made_up.push_back(made_up_increment(*hole, options_.gaps, begin_ns, end_ns));
+    begin_ns = end_ns;
   }
+  for (const ImuIncrement& increment : made_up) take(increment);
+  recent_ = RecentRates();
   if (noticeable) {
-    sink_.notice(
-        {time_ns_, NoticeKind::imu_gap,
-         fmt::format("no IMU data for {:.3f} s up to {}; bridged{}", hole->length(), text(time_ns_),
-                     hole->turn ? ", with the turn that GNSS shows" : "")});
+    sink_.notice({time_ns_, NoticeKind::imu_gap,
+                  fmt::format("no IMU data for {:.3f} s up to {}; bridged{}", hole->length(),
+                              text(hole->after.t_begin_ns),
+                              hole->turn ? ", with the turn that GNSS shows" : "")});
   }
   for (const Measurement& measurement : beyond) take(measurement);
 }
@@ -391,21 +399,27 @@ void NavigationRun::RecentRates::add(const ImuIncrement& increment) {
   accel_b += weight * (increment.dvel_b / dt - accel_b);
 }
 
-/// Propagates over the increment, which begins now, with a stop wherever something is due.
-void NavigationRun::advance(const ImuIncrement& increment) {
+/// Propagates over the increment, which begins now, with a stop wherever something is due. False if
+/// a doubt has come up; what is left of the increment is held back then.
+bool NavigationRun::advance(const ImuIncrement& increment) {
   ImuIncrement rest = increment;
   while (const std::optional<int64_t> stop_ns = next_stop(rest.t_end_ns)) {
     if (*stop_ns >= rest.t_end_ns) {
       propagate(rest);
       handle_stop();
-      return;
+      return !doubt_;
     }
     const auto [until_stop, after_stop] = split(rest, *stop_ns);
     propagate(until_stop);
     handle_stop();
     rest = after_stop;
+    if (doubt_) {
+      look_beyond_doubt(rest);
+      return false;
+    }
   }
   propagate(rest);
+  return true;
 }
 
 void NavigationRun::propagate(const ImuIncrement& increment) {
@@ -439,6 +453,7 @@ void NavigationRun::handle_stop() {
     const Event event = pending_.begin()->second;
     pending_.erase(pending_.begin());
     if (const auto* fix = std::get_if<GnssFix>(&event)) handle_fix(*fix);
+    if (doubt_) return;
   }
   if (time_ns_ >= hold_due_ns()) hold();
   emit_epoch();
@@ -457,6 +472,7 @@ void NavigationRun::emit_epoch() {
 
 // Fixes -----------------------------------------------------------------------------------------
 
+/// A fix that is in doubt is handled once the doubt is resolved.
 void NavigationRun::handle_fix(const GnssFix& fix) {
   FixResult result;
   result.t_ns = fix.t_ns;
@@ -467,43 +483,105 @@ void NavigationRun::handle_fix(const GnssFix& fix) {
     result.verdict = FixVerdict::bad_sigma;
   } else {
     const Innovation innovation = navigator_->innovation(trusted);
-    result.innovation_n = innovation.value_n;
+    result.innovation_n = result.postfit_n = innovation.value_n;
     result.innovation_covariance = innovation.covariance;
-    result.verdict = judge(trusted, innovation);
-    if (result.verdict == FixVerdict::used) {
-      weigh(innovation);
-      use(trusted, result);
+    if (!can_be_judged(trusted)) {
+      result.verdict = FixVerdict::low_quality;
     } else {
-      result.postfit_n = result.innovation_n;
+      const std::optional<FixDecision> decision = decide(trusted, innovation);
+      if (!decision) return doubt(fix, trusted, returns_after_outage(fix));
+      result.verdict = carry_out(*decision, trusted, innovation, result);
     }
   }
   if (result.verdict != FixVerdict::used) notice_first_rejection(fix, result.verdict);
   sink_.fix(result);
 }
 
-FixVerdict NavigationRun::judge(const GnssFix& fix, const Innovation& innovation) {
-  if (fix.quality < quality_from(options_.gnss.min_quality)) return FixVerdict::low_quality;
-  using Action = FixJudge::Action;
-  const FixJudge::Decision decision = judge_->judge(fix, innovation, *navigator_);
-  if (!decision.notice.empty()) {
-    sink_.notice({fix.t_ns, NoticeKind::fix_rejected, decision.notice});
+bool NavigationRun::can_be_judged(const GnssFix& trusted) const {
+  return position_is_valid(trusted.antenna) && covariance_is_valid(trusted.position_covariance) &&
+         trusted.quality >= quality_from(options_.gnss.min_quality);
+}
+
+/// None: it is in doubt.
+std::optional<FixDecision> NavigationRun::decide(const GnssFix& fix, const Innovation& innovation) {
+  if (std::optional<FixDecision> decision = decided_before(fix)) return decision;
+  const bool believed = judge_->believes(fix.t_ns, innovation);
+  if (!believed || returns_after_outage(fix)) return std::nullopt;
+  return FixDecision{FixDecision::Action::use, fix};
+}
+
+/// No fix has held the state for some time.
+bool NavigationRun::returns_after_outage(const GnssFix& fix) const {
+  constexpr double kOutage = 3;             // [s]
+  constexpr double kOutageIntervals = 3.5;  // of fixes
+  const double interval = 1e-9 * static_cast<double>(fix_interval_ns_);
+  const double unheld = seconds_between(last_used_ns_, fix.t_ns);
+  return unheld > std::max(kOutage, kOutageIntervals * interval) && !judge_->gate_is_open(fix.t_ns);
+}
+
+void NavigationRun::doubt(const GnssFix& fix, const GnssFix& trusted, bool returns) {
+  doubted_fix_ = fix;
+  doubt_ = std::make_unique<FixDoubt>(options_.gnss, *judge_, *navigator_, trusted, returns);
+  for (const auto& [t_ns, event] : pending_) {  // they are in order, and wait where they are
+    if (const auto* next = std::get_if<GnssFix>(&event)) show_doubt(*next);
   }
+}
+
+/// True once the doubt is decided.
+bool NavigationRun::show_doubt(const Measurement& measurement) {
+  const auto* fix = std::get_if<GnssFix>(&measurement);
+  if (!fix) return doubt_->add(measurement);
+  const GnssFix trusted = weighted(*fix, options_.gnss);
+  return can_be_judged(trusted) && doubt_->add(trusted);
+}
+
+std::optional<FixDecision> NavigationRun::decided_before(const GnssFix& fix) {
+  const auto found = decided_.find(fix.t_ns);
+  if (found == decided_.end()) return std::nullopt;
+  const FixDecision decision = found->second;
+  decided_.erase(found);
+  return decision;
+}
+
+/// Holds back what follows a fix in doubt until it is known what it was.
+void NavigationRun::look_beyond_doubt(const Measurement& measurement) {
+  beyond_doubt_.push_back(measurement);
+  if (show_doubt(measurement)) resolve_doubt();
+}
+
+/// Goes through what was held back, with what is known of it now.
+void NavigationRun::resolve_doubt() {
+  const DoubtOutcome outcome = doubt_->outcome();
+  doubt_.reset();
+  std::deque<Measurement> beyond;
+  beyond.swap(beyond_doubt_);
+  for (const std::string& line : outcome.notices) {
+    sink_.notice({time_ns_, NoticeKind::fix_rejected, line});
+  }
+  decided_.clear();
+  for (const FixDecision& decision : outcome.fixes) decided_.emplace(decision.fix.t_ns, decision);
+  for (const double square : outcome.level) judge_->remember(square);
+  if (outcome.loosened) navigator_->loosen(*outcome.loosened);
+  if (outcome.state_was_wrong) judge_->doubt_state(outcome.fixes.back().fix.t_ns);
+  handle_fix(*doubted_fix_);
+  handle_stop();
+  for (const Measurement& measurement : beyond) take(measurement);
+}
+
+FixVerdict NavigationRun::carry_out(const FixDecision& decision, const GnssFix& fix,
+                                    const Innovation& innovation, FixResult& result) {
   switch (decision.action) {
-    case Action::leave_out:
+    case FixDecision::Action::leave_out:
       return FixVerdict::gated;
-    case Action::use_corrected:
+    case FixDecision::Action::use_corrected:
       navigator_->update(decision.fix);
       remember_fix_time();
-      return FixVerdict::gated;
-    case Action::move_state:
-      navigator_->start(moved_to_fix(navigator_->epoch(), fix, innovation));
-      break;
-    case Action::restart_state:
-      navigator_->start(restarted_at_fix(navigator_->epoch(), fix, innovation, decision.line));
-      break;
-    case Action::use:
+      return FixVerdict::corrected;
+    case FixDecision::Action::use:
       break;
   }
+  weigh(innovation);
+  use(fix, result);
   return FixVerdict::used;
 }
 
@@ -523,7 +601,7 @@ void NavigationRun::weigh(const Innovation& innovation) {
 
 void NavigationRun::remember_fix_time() {
   if (last_fix_ns_) fix_interval_ns_ = time_ns_ - *last_fix_ns_;
-  last_fix_ns_ = time_ns_;
+  last_fix_ns_ = last_used_ns_ = time_ns_;
   last_node_ns_ = time_ns_;
 }
 
@@ -543,7 +621,7 @@ void NavigationRun::finish() {
     if (!screened) break;
     align_screened(screened->measurement, screened->plausible);
   }
-  while (hole_) leave_hole();
+  while (hole_ || doubt_) doubt_ ? resolve_doubt() : leave_hole();
   throw_if_nothing_usable();
   if (!started_before_) throw DataError(aligner_.why_not());
   notice_left_out();

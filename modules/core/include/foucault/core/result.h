@@ -24,7 +24,8 @@ struct Epoch {
   Matrix15d covariance = Matrix15d::Zero();
 };
 
-enum class FixVerdict { used, bad_sigma, gated, low_quality, out_of_order };
+/// corrected: used less an error that it shares with its neighbours.
+enum class FixVerdict { used, bad_sigma, gated, low_quality, out_of_order, corrected };
 
 /// What became of a fix. The innovation is the fix minus its prediction before it is used.
 struct FixResult {

@@ -51,6 +51,9 @@ class ImuOptions : public Configurable {
   /// The preset with the overrides, in SI. Throws UsageError for an unknown preset.
   ImuNoise noise() const;
   SampleKind sample_kind() const;
+
+  /// The same with every sigma and noise density `factor` times as large.
+  ImuOptions scaled(double factor) const;
 };
 
 /// Names of the presets, in the order shown to users.

@@ -39,10 +39,12 @@ class GapOptions : public Configurable {
   void fields(ConfigFields& f) override;
 };
 
+class FixDoubt;
 class FixJudge;
 class FixScreen;
 class ImuGuard;
 class Plausibility;
+struct FixDecision;
 struct ImuHole;
 
 enum class EpochRate { epochs, imu };
@@ -139,14 +141,23 @@ class NavigationRun : public Estimator {
   int64_t beyond_hole_end_ns() const;
   void leave_hole();
   void realign(const ImuIncrement& next);
-  void advance(const ImuIncrement& increment);
+  bool advance(const ImuIncrement& increment);
   std::optional<int64_t> next_stop(int64_t end_ns) const;
   int64_t hold_due_ns() const;
   void propagate(const ImuIncrement& increment);
 
   void handle_stop();
   void handle_fix(const GnssFix& fix);
-  FixVerdict judge(const GnssFix& fix, const Innovation& innovation);
+  std::optional<FixDecision> decide(const GnssFix& fix, const Innovation& innovation);
+  std::optional<FixDecision> decided_before(const GnssFix& fix);
+  bool returns_after_outage(const GnssFix& fix) const;
+  void doubt(const GnssFix& fix, const GnssFix& trusted, bool returns);
+  bool show_doubt(const Measurement& measurement);
+  void look_beyond_doubt(const Measurement& measurement);
+  bool can_be_judged(const GnssFix& trusted) const;
+  void resolve_doubt();
+  FixVerdict carry_out(const FixDecision& decision, const GnssFix& fix,
+                       const Innovation& innovation, FixResult& result);
   void use(const GnssFix& fix, FixResult& result);
   void remember_fix_time();
   void hold();
@@ -174,6 +185,11 @@ class NavigationRun : public Estimator {
   std::unique_ptr<Plausibility> plausibility_;
   std::unique_ptr<FixScreen> screen_;
   std::unique_ptr<FixJudge> judge_;
+  std::unique_ptr<FixDoubt> doubt_;
+  std::optional<GnssFix> doubted_fix_;
+  std::deque<Measurement> beyond_doubt_;         ///< what came after it
+  std::multimap<int64_t, FixDecision> decided_;  ///< of fixes to come, by stamp
+  int64_t last_used_ns_ = 0;                     ///< fix, or start
   std::optional<GnssFix> last_fix_seen_;
   std::optional<Epoch> before_hole_;  ///< the last state, while aligning anew
   RecentRates recent_;

@@ -1,0 +1,99 @@
+#include "return_trial.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "foucault/core/time.h"
+
+namespace foucault {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+/// A noise model is off by a factor of ten now and then, the errors of a consumer IMU in curves by
+/// more; the prior falls as 1 / scale.
+constexpr double kLargestScale = 512;
+constexpr double kLogOutlier = -4.6;     ///< one fix in a hundred
+constexpr double kLogOffset = -4.6;      ///< one return in a hundred
+constexpr double kOffsetOdds = 20;       ///< of the posterior
+constexpr double kLongEnough = 5;        ///< [s], of fixes
+constexpr std::size_t kEnoughFixes = 5;  ///< two to tell velocity, the others for outliers
+
+double log_density(const Vector3d& value, const Matrix3d& covariance) {
+  const Eigen::LLT<Matrix3d> llt(covariance);
+  const Vector3d diagonal = Matrix3d(llt.matrixL()).diagonal();
+  return -0.5 * value.dot(llt.solve(value)) - diagonal.array().log().sum();
+}
+
+/// Of an error whose size nobody knows before: as large as it is, on all axes.
+double log_density_of_error(const Vector3d& value, const Matrix3d& covariance) {
+  return log_density(value, covariance + value.squaredNorm() / 3 * Matrix3d::Identity());
+}
+
+}  // namespace
+
+ReturnTrial::ReturnTrial(const Navigator& navigator, const GnssFix& first, double level)
+    : level_(level), begin_ns_(first.t_ns), last_ns_(first.t_ns) {
+  for (double scale = 1; scale <= kLargestScale; scale *= 2) add_scale(navigator, scale);
+  add_offset(navigator, navigator.innovation(first).value_n.squaredNorm() / 3);
+}
+
+void ReturnTrial::add_scale(const Navigator& navigator, double scale) {
+  Hypothesis& h = hypotheses_.emplace_back();
+  h.navigator = navigator.ahead(scale);
+  h.scale = scale;
+  h.log_probability = -std::log(scale);
+}
+
+void ReturnTrial::add_offset(const Navigator& navigator, double variance) {
+  Matrix15d added = Matrix15d::Zero();
+  added.diagonal().segment<3>(error_state::kPosition).setConstant(variance);
+  Hypothesis& h = hypotheses_.emplace_back();
+  h.navigator = navigator.ahead(1);
+  h.navigator->loosen(added);
+  h.offset = true;
+  h.log_probability = kLogOffset;
+}
+
+void ReturnTrial::propagate(const ImuIncrement& increment) {
+  for (Hypothesis& h : hypotheses_) h.navigator->propagate(increment);
+}
+
+void ReturnTrial::add(const GnssFix& fix) {
+  GnssFix trusted = fix;
+  trusted.position_covariance *= level_;
+  for (Hypothesis& h : hypotheses_) try_fix(h, trusted);
+  last_ns_ = fix.t_ns;
+}
+
+void ReturnTrial::try_fix(Hypothesis& h, const GnssFix& fix) {
+  const Innovation innovation = h.navigator->innovation(fix);
+  const double true_fix = log_density(innovation.value_n, innovation.covariance);
+  const double outlier =
+      kLogOutlier + log_density_of_error(innovation.value_n, innovation.covariance);
+  h.used.push_back(true_fix >= outlier);
+  h.log_probability += std::max(true_fix, outlier);
+  if (h.used.back()) h.navigator->update(fix);
+}
+
+bool ReturnTrial::is_over() const {
+  return hypotheses_.front().used.size() >= kEnoughFixes &&
+         seconds_between(begin_ns_, last_ns_) >= kLongEnough;
+}
+
+ReturnTrial::Verdict ReturnTrial::verdict() const {
+  const Hypothesis& offset = hypotheses_.back();
+  const auto best = std::max_element(
+      hypotheses_.begin(), hypotheses_.end() - 1,
+      [](const auto& a, const auto& b) { return a.log_probability < b.log_probability; });
+  const bool is_offset = offset.log_probability > best->log_probability + std::log(kOffsetOdds);
+  constexpr double kScaleOdds = 20;  // of the posterior, against sigmas as they are
+  const Hypothesis& nominal = hypotheses_.front();
+  const bool as_said = nominal.log_probability > best->log_probability - std::log(kScaleOdds);
+  const Hypothesis& believed = as_said ? nominal : *best;
+  return {is_offset, believed.scale, believed.used};
+}
+
+}  // namespace foucault
