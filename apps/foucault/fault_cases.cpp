@@ -18,10 +18,19 @@ constexpr double kToTheEnd = std::numeric_limits<double>::infinity();
 Fault middle(Kind kind, double length_s, double size = 0) {
   return {kind, kFaultStart, length_s, size};
 }
+/// No fixes for gap_s, and then some that are off by offset_m for wrong_s.
+FaultCase wrong_return(int gap_s, int wrong_s, int offset_m) {
+  const double end_s = kFaultStart + gap_s;
+  return {fmt::format("return_{}s_{}s_{}m", gap_s, wrong_s, offset_m),
+          fmt::format("{} s without fixes, then {} s of fixes {} m off", gap_s, wrong_s, offset_m),
+          {{Kind::fix_gap, kFaultStart, static_cast<double>(gap_s)},
+           {Kind::fix_jump, end_s, static_cast<double>(wrong_s), static_cast<double>(offset_m)}}};
+}
+
 Fault throughout(Kind kind, double size = 0) { return {kind, 0, kToTheEnd, size}; }
 
 std::vector<FaultCase> make_cases() {
-  return {
+  std::vector<FaultCase> cases{
       {"none", "nothing", {}},
       {"outliers", "10 % of the fixes 5 to 50 m off", {throughout(Kind::fix_outliers, 0.1)}},
       {"ramp", "fixes drift off to 20 m in 60 s", {middle(Kind::fix_ramp, 60, 20)}},
@@ -34,6 +43,12 @@ std::vector<FaultCase> make_cases() {
       {"jump_back",
        "fixes 100 m off until the jump to the truth",
        {{Kind::fix_jump, 0, kFaultStart, 100}}},
+      {"wrong_after_float",
+       "60 s of float fixes, then 10 s of fixes with wrong ambiguities, 5 m off",
+       {{Kind::fix_float, kFaultStart, 60, 1e9}, {Kind::fix_jump, kFaultStart + 60, 10, 5}}},
+      {"outliers_float",
+       "float and fixed every other 4 s, 10 % of the fixes 5 to 50 m off",
+       {throughout(Kind::fix_float, 4), throughout(Kind::fix_outliers, 0.1)}},
       {"sigma_small", "sigmas ten times too small", {throughout(Kind::fix_sigma_scale, 0.1)}},
       {"sigma_zero", "sigmas of zero for 60 s", {middle(Kind::fix_sigma_zero, 60)}},
       {"sigma_negative", "negative variances for 60 s", {middle(Kind::fix_sigma_negative, 60)}},
@@ -79,6 +94,14 @@ std::vector<FaultCase> make_cases() {
       {"file_empty", "a file of no bytes", {}, FileDamage::emptied},
       {"file_text", "a text under its name", {}, FileDamage::text},
   };
+  for (const int gap_s : {5, 20, 60}) {
+    for (const int wrong_s : {5, 15, 60}) {
+      for (const int offset_m : {5, 20, 100}) {
+        cases.push_back(wrong_return(gap_s, wrong_s, offset_m));
+      }
+    }
+  }
+  return cases;
 }
 
 void overwrite_middle(const std::string& path) {

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "command.h"
+#include "config_arguments.h"
 #include "fault_study.h"
 #include "foucault/evaluation/task_pool.h"
 #include "foucault/reports/report_page.h"
@@ -12,6 +13,7 @@
 #include "laboratory_report.h"
 #include "methods.h"
 #include "output_directory.h"
+#include "return_study.h"
 #include "text_file.h"
 
 namespace foucault::app {
@@ -136,12 +138,110 @@ CLI::App* declare_fault_study(CLI::App& app, FaultStudyOptions& o) {
   return faults;
 }
 
+struct ReturnStudyOptions {
+  std::vector<std::string> logs;  ///< empty: a simulated trip
+  ConfigArguments config;
+  std::vector<std::string> methods;
+  std::vector<double> noise, lengths;
+  int jobs = processor_count();
+  std::string out = "foucault-returns";
+};
+
+/// What is not given is swept on the simulated trip, and as configured on a recording.
+ReturnStudyOptions completed(ReturnStudyOptions options, const Settings& settings) {
+  const bool simulated = options.logs.empty();
+  if (simulated) options.logs.emplace_back();
+  if (options.noise.empty()) {
+    options.noise = simulated ? std::vector<double>{0.1, 0.3, 1, 3, 10} : std::vector<double>{1};
+  }
+  if (options.lengths.empty()) {
+    options.lengths = simulated ? std::vector<double>{5, 15, 30, 60, 120}
+                                : std::vector<double>{settings.outages.length_s};
+  }
+  return options;
+}
+
+std::vector<ReturnCase> return_cases(const ReturnStudyOptions& options) {
+  for (const std::string& method : options.methods) find_method(method);
+  std::vector<ReturnCase> cases;
+  for (const std::string& log : options.logs) {
+    for (const double noise : options.noise) {
+      for (const double length_s : options.lengths) {
+        for (const std::string& method : options.methods) {
+          cases.push_back({log, noise, length_s, method});
+        }
+      }
+    }
+  }
+  return cases;
+}
+
+void study_returns(const ReturnStudyOptions& given, Call& call) {
+  Settings settings;
+  apply(given.config, settings);
+  const ReturnStudyOptions options = completed(given, settings);
+  const std::vector<ReturnCase> cases = return_cases(options);
+  OutputDirectory directory(options.out);
+  std::vector<ReturnOutcome> outcomes(cases.size());
+  run_tasks(
+      cases.size(), options.jobs,
+      [&](std::size_t i, const TaskProgress& progress) {
+        progress(0);
+        outcomes[i] = study_return(cases[i], settings);
+      },
+      call.console.progress_of("returns"));
+  write_text_file(directory.staging() / "returns.csv", to_csv(return_table(outcomes)));
+  const std::string summary = to_markdown(return_summary(outcomes));
+  write_text_file(directory.staging() / "returns.md", summary);
+  directory.commit();
+  call.console.say(summary);
+  call.console.say(fmt::format("{:<10} {}", "written", options.out));
+}
+
+CLI::App* declare_return_study(CLI::App& app, ReturnStudyOptions& o) {
+  CLI::App* returns = app.add_subcommand(
+      "returns",
+      "Whether true fixes are believed after outages, whatever the noise model: against no gate");
+  returns->fallthrough();
+  for (const Method& method : methods()) o.methods.push_back(method.name);
+  returns->add_option("LOG", o.logs,
+                      "Rawlogs, with the outages of the configuration; default: a "
+                      "simulated trip");
+  add_config_options(*returns, o.config, [] {
+    Settings settings;
+    return describe_config(settings);
+  });
+  returns->add_option("--methods", o.methods, "Separated by commas")
+      ->delimiter(',')
+      ->capture_default_str();
+  returns
+      ->add_option("--noise", o.noise,
+                   "What the noise of the IMU is configured by, times what it is, separated by "
+                   "commas; default: 0.1 to 10, of a recording 1")
+      ->delimiter(',')
+      ->check(CLI::PositiveNumber);
+  returns
+      ->add_option("--lengths", o.lengths,
+                   "Of the outages [s], separated by commas; default: 5 to 120, of a recording "
+                   "outages.length_s")
+      ->delimiter(',')
+      ->check(CLI::PositiveNumber);
+  returns->add_option("--jobs", o.jobs, "Runs at the same time")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+  returns->add_option("--out", o.out, "Folder for returns.csv, a row a run, and returns.md")
+      ->capture_default_str();
+  return returns;
+}
+
 }  // namespace
 
 std::function<void(Call&)> declare_lab(CLI::App& app) {
   app.require_subcommand(1);
   const auto faults = std::make_shared<FaultStudyOptions>();
   CLI::App* fault_study = declare_fault_study(app, *faults);
+  const auto returns = std::make_shared<ReturnStudyOptions>();
+  CLI::App* return_study = declare_return_study(app, *returns);
   CLI::App* preintegration = app.add_subcommand(
       "preintegration", "Error of rough, refined and full, and of each term, on exact motion");
   preintegration->fallthrough();
@@ -164,9 +264,11 @@ std::function<void(Call&)> declare_lab(CLI::App& app) {
       "\nExamples:\n"
       "  foucault lab preintegration --out lab\n"
       "  foucault lab preintegration --motion vibration,airliner --out lab");
-  return [o, faults, fault_study](Call& call) {
+  return [o, faults, fault_study, returns, return_study](Call& call) {
     if (fault_study->parsed()) {
       study_faults(*faults, call);
+    } else if (return_study->parsed()) {
+      study_returns(*returns, call);
     } else {
       study_preintegration(*o, call);
     }

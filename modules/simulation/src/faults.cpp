@@ -87,6 +87,11 @@ class Injection {
       case FaultKind::fix_jump:
         out = moved(fix, fault_.size * Eigen::Vector3d::UnitY());
         break;
+      case FaultKind::fix_gap:
+        return;
+      case FaultKind::fix_float:
+        if (std::fmod(t, 2 * fault_.size) < fault_.size) out.quality = FixQuality::float_rtk;
+        break;
       case FaultKind::fix_sigma_scale:
         out.position_covariance *= fault_.size * fault_.size;
         break;

@@ -16,6 +16,8 @@ enum class FaultKind {
   fix_outliers,     ///< a share `size` of the fixes lies 5 to 50 m off, horizontally
   fix_ramp,         ///< off by an error that grows from 0 to `size` and then is gone, northeast
   fix_jump,         ///< off by `size`, to the east
+  fix_gap,          ///< none
+  fix_float,        ///< of float quality, every other `size` seconds
   fix_sigma_scale,  ///< sigmas are reported `size` times as large, the errors stay
   fix_sigma_zero,
   fix_sigma_negative,  ///< variances below zero

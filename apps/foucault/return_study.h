@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "foucault/evaluation/drift_table.h"
+#include "settings.h"
+
+/// Whether true fixes are believed when they return after an outage, however wrong the noise model
+/// is: each run beside the same with the gate off, which believes everything.
+namespace foucault::app {
+
+struct ReturnCase {
+  std::string log;       ///< a rawlog; empty: a simulated trip
+  double noise = 1;      ///< what all sigmas of the IMU are configured by, times what they are
+  double length_s = 60;  ///< of the outages
+  std::string method;
+};
+
+struct ReturnOutcome {
+  ReturnCase what;
+  int64_t outages = 0;
+  double drift_m = 0;    ///< RMS of the largest horizontal drift of each outage
+  double control_m = 0;  ///< the same with the gate off
+  int64_t left_out = 0;  ///< fixes, after the first outage
+  double latest_s = 0;   ///< after its outage, the last fix that was left out
+  std::string error;     ///< why nothing came out
+
+  double ratio() const { return drift_m / control_m; }
+};
+
+/// The simulated trip: city, ADIS16465 at 200 Hz, RTK at 1 Hz, 900 s. Outages begin after 200 s and
+/// leave 60 s between them.
+ReturnOutcome study_return(const ReturnCase& what, const Settings& settings);
+
+/// A row a case.
+TextTable return_table(const std::vector<ReturnOutcome>& outcomes);
+
+/// For each length and noise the worst of the methods.
+TextTable return_summary(const std::vector<ReturnOutcome>& outcomes);
+
+}  // namespace foucault::app
