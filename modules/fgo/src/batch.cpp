@@ -50,15 +50,13 @@ class BatchGraph {
 
   const std::vector<NodeState>& states() const { return x_; }
 
-  /// What the node itself brings: its fixes, and the prior at the first.
-  NodeInformation own_information(std::size_t k) const {
-    NodeInformation out;
+  /// Adds what the node itself brings: its fixes, and the prior at the first.
+  void add_own(std::size_t k, NodeInformation& information) const {
+    if (k == 0) information.add(prior_.linearize(x_[0]));
     for (const GnssFactor& factor : fixes_[k]) {
       const GnssFactor::Linearized fix = factor.linearize(x_[k]);
-      out.add(fix, loss_weight(loss_.get(), fix));
+      information.add(fix, loss_weight(loss_.get(), fix));
     }
-    if (k == 0) out.add(prior_.linearize(x_[0]));
-    return out;
   }
 
   /// The interval from node k to k + 1.
@@ -83,20 +81,20 @@ MotionResidual reversed(const MotionResidual& interval) {
 std::vector<Matrix15d> covariances(const BatchGraph& graph) {
   const StageTimer timer(Stage::covariance);
   const std::size_t nodes = graph.states().size();
-  std::vector<Matrix15d> result(nodes);  // the information from before, until it is the covariance
+  std::vector<Matrix15d> result(nodes);  // the root from before, until it is the covariance
   NodeInformation from_before;
   for (std::size_t k = 0; k < nodes; ++k) {
     if (k > 0) from_before = eliminate(from_before, graph.interval(k - 1)).rest;
-    from_before.H += graph.own_information(k).H;
-    result[k] = from_before.H;
+    graph.add_own(k, from_before);
+    result[k] = from_before.S;
   }
   NodeInformation from_behind;
   for (std::size_t k = nodes; k-- > 0;) {
     NodeInformation all = from_behind;
-    all.H += result[k];
+    all.add(NodeInformation{result[k], Vector15d::Zero()});
     result[k] = covariance(all);
     if (k == 0) break;
-    from_behind.H += graph.own_information(k).H;
+    graph.add_own(k, from_behind);
     from_behind = eliminate(from_behind, reversed(graph.interval(k - 1))).rest;
   }
   return result;

@@ -116,6 +116,7 @@ void WindowNavigator::hold() {
   const Prediction now = prediction();
   add_node(now.x, measured(*integrator_, model_));
   linearize(nodes_.size() - 1);
+  covariance_ = now.covariance;
   marginalize_old();
   begin_interval();
 }
@@ -137,6 +138,8 @@ void WindowNavigator::solve() {
     carry_back(from);
     from = first_unsettled();
   }
+  const StageTimer timer(Stage::covariance);
+  covariance_ = covariance(nodes_.back().past.information);
 }
 
 /// Solves for the nodes from `from` on, and for the settled one before them.
@@ -160,29 +163,25 @@ void WindowNavigator::linearize(std::size_t from) {
   const StageTimer timer(Stage::marginalize);
   for (std::size_t k = from; k < nodes_.size(); ++k) {
     Node& node = nodes_[k];
-    node.past = {node.x, own_information(node)};
+    node.past = {node.x, {}};
     if (k == 0) {
       node.past.information.add(PriorFactor(prior_).linearize(node.x));
-      continue;
+    } else {
+      const Linearization& before = nodes_[k - 1].past;
+      Interval& interval = intervals_[k - 1];
+      interval.elimination =
+          eliminate(before.information, interval.factor->linearize(before.at, node.x));
+      node.past.information = interval.elimination.rest;
     }
-    const Linearization& before = nodes_[k - 1].past;
-    Interval& interval = intervals_[k - 1];
-    interval.elimination =
-        eliminate(before.information, interval.factor->linearize(before.at, node.x));
-    node.past.information.H += interval.elimination.rest.H;
-    node.past.information.b += interval.elimination.rest.b;
+    add_fixes(node);
   }
-  const StageTimer covariance_timer(Stage::covariance);
-  covariance_ = covariance(nodes_.back().past.information);
 }
 
-NodeInformation WindowNavigator::own_information(const Node& node) const {
-  NodeInformation out;
+void WindowNavigator::add_fixes(Node& node) const {
   for (const GnssFactor& factor : node.fixes) {
     const GnssFactor::Linearized fix = factor.linearize(node.x);
-    out.add(fix, loss_weight(loss_.get(), fix));
+    node.past.information.add(fix, loss_weight(loss_.get(), fix));
   }
-  return out;
 }
 
 /// The states before `from` that go with those behind.

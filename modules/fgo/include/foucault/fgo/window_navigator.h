@@ -75,7 +75,7 @@ class WindowNavigator final : public Navigator {
   void carry_back(std::size_t from);
   std::size_t first_unsettled();
   bool has_moved(const Node& node) const;
-  NodeInformation own_information(const Node& node) const;
+  void add_fixes(Node& node) const;
   void marginalize_old();
   bool at_node() const { return integrator_->dt() == 0; }
 

@@ -1,0 +1,143 @@
+/// Outages of hours, in which covariances grow by ten orders of magnitude: all methods go on, and
+/// know what the filter in covariance form knows.
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <optional>
+
+#include "foucault/core/so3.h"
+#include "foucault/core/time.h"
+#include "foucault/ekf/ekf.h"
+#include "foucault/fgo/window_navigator.h"
+#include "foucault/simulation/simulated_source.h"
+
+namespace foucault {
+namespace {
+
+/// Fixes, an outage, and a minute of fixes again.
+struct Drive {
+  const char* scenario;
+  ImuNoise noise;
+  double outage_s;
+
+  ScenarioOptions options() const {
+    constexpr double kAfter = 60;
+    ScenarioOptions o;
+    o.name = scenario;
+    o.duration_s = kBefore + outage_s + kAfter;
+    o.seed = 5;
+    o.imu_rate_hz = 20;
+    o.reference_rate_hz = 0;
+    return o;
+  }
+  int64_t outage_begin_ns() const { return options().start_ns() + nanoseconds(kBefore); }
+  int64_t outage_end_ns() const { return outage_begin_ns() + nanoseconds(outage_s); }
+
+  static constexpr double kBefore = 200;
+};
+
+/// The true state with a coarse alignment's covariance.
+Epoch initial(const Drive& drive, const SimulatedSource& source) {
+  Epoch epoch = source.truth(drive.options().start_ns());
+  epoch.bias = {};
+  Vector15d sigma;
+  sigma << Eigen::Vector3d::Constant(0.1), Eigen::Vector3d::Constant(0.1),
+      Eigen::Vector3d(1e-3, 1e-3, 1e-2),
+      Eigen::Vector3d::Constant(gyro_markov_bias(drive.noise).sigma),
+      Eigen::Vector3d::Constant(accel_markov_bias(drive.noise).sigma);
+  epoch.covariance = sigma.cwiseAbs2().asDiagonal();
+  return epoch;
+}
+
+/// True minus estimated.
+Vector15d error_of(const Epoch& epoch, const Epoch& truth) {
+  Vector15d error;
+  error << displacement_n(epoch.position, truth.position, Place(truth.position)),
+      truth.velocity_n - epoch.velocity_n, so3::log(epoch.q_n_b.conjugate() * truth.q_n_b),
+      truth.bias.gyro - epoch.bias.gyro, truth.bias.accel - epoch.bias.accel;
+  return error;
+}
+
+struct Outcome {
+  Innovation back;  ///< of the first fix after the outage
+  Epoch end;
+  Vector15d error;  ///< of `end`
+};
+
+Outcome run(const Drive& drive, Navigator& navigator) {
+  SimulatedSource source(drive.options(), drive.noise);
+  navigator.start(initial(drive, source));
+  Outcome outcome;
+  std::optional<GnssFix> fix;
+  while (const std::optional<Measurement> measurement = source.next()) {
+    if (const auto* next = std::get_if<GnssFix>(&*measurement)) fix = *next;
+    const auto* increment = std::get_if<ImuIncrement>(&*measurement);
+    if (increment == nullptr) continue;
+    navigator.propagate(*increment);
+    if (!fix || fix->t_ns != increment->t_end_ns) continue;
+    if (fix->t_ns > drive.outage_begin_ns() && fix->t_ns < drive.outage_end_ns()) {
+      navigator.hold();
+      continue;
+    }
+    if (fix->t_ns == drive.outage_end_ns()) outcome.back = navigator.innovation(*fix);
+    navigator.update(*fix);
+  }
+  outcome.end = navigator.epoch();
+  outcome.error = error_of(outcome.end, source.truth(outcome.end.t_ns));
+  return outcome;
+}
+
+Outcome run_filter(const Drive& drive) {
+  EkfNavigator filter(drive.noise, EkfOptions{});
+  return run(drive, filter);
+}
+
+Outcome run_window(const Drive& drive, PreintegrationModel model) {
+  WindowNavigator window(FgoOptions{}, model, drive.noise);
+  return run(drive, window);
+}
+
+/// Largest deviation, each element in units of the sigmas of `expected`.
+template <class Matrix>
+double relative_deviation(const Matrix& value, const Matrix& expected) {
+  const Eigen::MatrixXd scale = expected.diagonal().cwiseSqrt().cwiseInverse().asDiagonal();
+  return (scale * (value - expected) * scale).cwiseAbs().maxCoeff();
+}
+
+Eigen::Matrix2d horizontal(const Innovation& innovation) {
+  return innovation.covariance.topLeftCorner<2, 2>();
+}
+
+/// In sigmas.
+double largest_horizontal_error(const Outcome& outcome) {
+  const Vector15d sigma = outcome.end.covariance.diagonal().cwiseSqrt();
+  return outcome.error.cwiseQuotient(sigma).head<2>().cwiseAbs().maxCoeff();
+}
+
+/// Heights are unstable, and 47 km up they are no longer linear: only horizontally do two models
+/// agree before the return.
+TEST(LongOutage, OfAnHourInACity) {
+  const Drive drive{"city", imu_preset("ADIS16465"), 3600};
+  const Outcome ekf = run_filter(drive);
+  const Outcome full = run_window(drive, PreintegrationModel::full);
+  EXPECT_GT(horizontal(ekf.back)(0, 0), 1e8);
+  EXPECT_LT(relative_deviation(horizontal(full.back), horizontal(ekf.back)), 0.01);
+  EXPECT_LT(relative_deviation(full.end.covariance, ekf.end.covariance), 0.01);
+  EXPECT_LT(largest_horizontal_error(full), 4);
+  const Outcome refined = run_window(drive, PreintegrationModel::refined);
+  EXPECT_LT(largest_horizontal_error(refined), 4);
+}
+
+TEST(LongOutage, OfTwoHoursAtRest) {
+  const Drive drive{"static", imu_preset("navigation"), 7200};
+  const Outcome ekf = run_filter(drive);
+  const Outcome full = run_window(drive, PreintegrationModel::full);
+  EXPECT_LT(relative_deviation(full.end.covariance, ekf.end.covariance), 0.01);
+  EXPECT_LT(largest_horizontal_error(full), 4);
+  const Outcome refined = run_window(drive, PreintegrationModel::refined);
+  EXPECT_LT(largest_horizontal_error(refined), 4);
+}
+
+}  // namespace
+}  // namespace foucault
