@@ -1,14 +1,19 @@
-/// Outages of hours, in which covariances grow by ten orders of magnitude: all methods go on, and
-/// know what the filter in covariance form knows.
+/// Where time and noise go to their limits: outages of hours, in which covariances grow by ten
+/// orders of magnitude, and biases that are constant. All methods go on, and know what the filter
+/// in covariance form knows.
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <memory>
 #include <optional>
+#include <vector>
 
+#include "foucault/core/error.h"
 #include "foucault/core/so3.h"
 #include "foucault/core/time.h"
-#include "foucault/ekf/ekf.h"
+#include "foucault/ekf/rts.h"
+#include "foucault/fgo/batch.h"
 #include "foucault/fgo/window_navigator.h"
 #include "foucault/simulation/simulated_source.h"
 
@@ -137,6 +142,104 @@ TEST(LongOutage, OfTwoHoursAtRest) {
   EXPECT_LT(largest_horizontal_error(full), 4);
   const Outcome refined = run_window(drive, PreintegrationModel::refined);
   EXPECT_LT(largest_horizontal_error(refined), 4);
+}
+
+/// What a smoother says afterwards, one a node.
+template <class Recorder>
+std::vector<SmoothedEpoch> smoothed(const Drive& drive, Recorder recorder) {
+  run(drive, recorder);
+  return recorder.smoothed();
+}
+
+std::vector<SmoothedEpoch> rts(const Drive& drive) {
+  return smoothed(drive, RtsRecorder(drive.noise, EkfOptions{}));
+}
+
+std::vector<SmoothedEpoch> batch(const Drive& drive) {
+  return smoothed(drive, BatchRecorder(std::make_unique<EkfNavigator>(drive.noise, EkfOptions{}),
+                                       FgoOptions{}, PreintegrationModel::full, drive.noise));
+}
+
+ImuNoise with_constant_biases() {
+  ImuNoise noise = imu_preset("ADIS16465");
+  noise.gyro_bias_sigma = noise.accel_bias_sigma = 0;
+  return noise;
+}
+
+ImuNoise with_a_constant_gyro_bias() {
+  ImuNoise noise = imu_preset("ADIS16465");
+  noise.gyro_bias_sigma = 0;
+  return noise;
+}
+
+ImuNoise with_biases_of_a_century() {
+  ImuNoise noise = imu_preset("ADIS16465");
+  noise.bias_tau = 3e9;
+  return noise;
+}
+
+class ConstantBias : public ::testing::TestWithParam<ImuNoise (*)()> {};
+INSTANTIATE_TEST_SUITE_P(Noises, ConstantBias,
+                         ::testing::Values(with_constant_biases, with_a_constant_gyro_bias,
+                                           with_biases_of_a_century));
+
+TEST_P(ConstantBias, WindowAndFilterAgree) {
+  const Drive drive{"city", GetParam()(), 60};
+  const Outcome ekf = run_filter(drive);
+  const Outcome full = run_window(drive, PreintegrationModel::full);
+  EXPECT_LT(relative_deviation(full.back.covariance, ekf.back.covariance), 0.005);
+  EXPECT_LT((full.back.value_n - ekf.back.value_n).norm(), 0.005 * ekf.back.value_n.norm());
+  EXPECT_LT(relative_deviation(full.end.covariance, ekf.end.covariance), 0.005);
+  EXPECT_LT(largest_horizontal_error(run_window(drive, PreintegrationModel::refined)), 4);
+}
+
+TEST_P(ConstantBias, SmoothersAgree) {
+  const Drive drive{"city", GetParam()(), 60};
+  const std::vector<SmoothedEpoch> filtered = rts(drive);
+  const std::vector<SmoothedEpoch> optimized = batch(drive);
+  ASSERT_EQ(filtered.size(), optimized.size());
+  for (std::size_t k = 200; k < filtered.size(); ++k) {
+    const Epoch& a = filtered[k].epoch;
+    const Epoch& b = optimized[k].epoch;
+    EXPECT_LT(relative_deviation(b.covariance, a.covariance), 0.005) << k;
+    const Vector15d sigma = a.covariance.diagonal().cwiseSqrt();
+    EXPECT_LT(error_of(b, a).cwiseQuotient(sigma).cwiseAbs().maxCoeff(), 0.1) << k;
+  }
+}
+
+/// Simulations may be without any noise; the filter and its smoother take that as it is.
+TEST(NoNoise, IsTakenByTheFilter) {
+  const Drive drive{"city", ImuNoise{}, 60};
+  const Outcome ekf = run_filter(drive);
+  EXPECT_LT(ekf.back.value_n.norm(), 0.1);
+  EXPECT_TRUE(ekf.end.covariance.allFinite());
+  for (const SmoothedEpoch& node : rts(drive)) {
+    EXPECT_TRUE(node.epoch.covariance.allFinite());
+    EXPECT_GE(node.epoch.covariance.diagonal().minCoeff(), 0);
+    EXPECT_TRUE(node.after.allFinite());
+  }
+}
+
+TEST(NoNoise, IsRefusedByGraphsWithItsKey) {
+  const auto refusal = [](double ImuNoise::*a, double ImuNoise::*b) -> std::string {
+    ImuNoise noise = imu_preset("ADIS16465");
+    noise.*a = noise.*b = 0;
+    try {
+      WindowNavigator(FgoOptions{}, PreintegrationModel::full, noise);
+    } catch (const UsageError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  using ::testing::HasSubstr;
+  EXPECT_THAT(refusal(&ImuNoise::gyro_noise_density, &ImuNoise::gyro_noise_density),
+              HasSubstr("imu.arw_deg_sqrt_h is 0"));
+  EXPECT_THAT(refusal(&ImuNoise::accel_noise_density, &ImuNoise::accel_noise_density),
+              HasSubstr("imu.vrw_m_s_sqrt_h is 0"));
+  EXPECT_THAT(refusal(&ImuNoise::gyro_bias_sigma, &ImuNoise::gyro_turn_on_sigma),
+              HasSubstr("imu.gyro_bias_deg_h and imu.gyro_turn_on_deg_h are both 0"));
+  EXPECT_THAT(refusal(&ImuNoise::accel_bias_sigma, &ImuNoise::accel_turn_on_sigma),
+              HasSubstr("imu.accel_bias_mgal and imu.accel_turn_on_mgal are both 0"));
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include "chain_problem.h"
 #include "foucault/core/profile.h"
 #include "foucault/fgo/chain.h"
+#include "graph_noise.h"
 #include "node_epoch.h"
 
 namespace foucault {
@@ -126,7 +127,9 @@ BatchSolution solve(BatchChain& chain, const FgoOptions& options, Preintegration
 
 BatchRecorder::BatchRecorder(std::unique_ptr<Navigator> forward, const FgoOptions& options,
                              PreintegrationModel model, const ImuNoise& noise)
-    : forward_(std::move(forward)), options_(options), model_(model), noise_(noise) {}
+    : forward_(std::move(forward)), options_(options), model_(model), noise_(noise) {
+  require_noise(noise);
+}
 
 void BatchRecorder::start(const Epoch& initial) {
   if (integrator_) mark();

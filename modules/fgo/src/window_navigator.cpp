@@ -5,6 +5,7 @@
 #include "chain_problem.h"
 #include "foucault/core/profile.h"
 #include "foucault/core/time.h"
+#include "graph_noise.h"
 #include "node_epoch.h"
 
 namespace foucault {
@@ -24,7 +25,9 @@ constexpr int kRounds = 8;
 
 WindowNavigator::WindowNavigator(const FgoOptions& options, PreintegrationModel model,
                                  const ImuNoise& noise)
-    : options_(options), model_(model), noise_(noise), loss_(make_loss(options)) {}
+    : options_(options), model_(model), noise_(noise), loss_(make_loss(options)) {
+  require_noise(noise);
+}
 
 WindowNavigator::~WindowNavigator() = default;
 

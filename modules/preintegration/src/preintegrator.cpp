@@ -1,5 +1,6 @@
 #include "foucault/preintegration/preintegrator.h"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -29,6 +30,15 @@ Matrix3d times_cross(const Matrix3d& M, const Vector3d& v) {
   return out;
 }
 
+/// A bias that is constant, or nearly, would leave its rows of the covariance without an inverse.
+/// Here it wanders by 1e-5 of its sigma in an hour: a navigation run learns a bias to 1e-3 of it
+/// and so gains 1e-4 of its variance. Real ones wander by 1e-2 and more.
+double wandering_power(double power, const MarkovBias& bias) {
+  constexpr double kLeastWander = 1e-5;
+  constexpr double kHour = 3600;  // [s]
+  return std::max(power, kLeastWander * kLeastWander * bias.sigma * bias.sigma / kHour);
+}
+
 /// q / |q| for a q that is off by rounding, a Newton step of it.
 Eigen::Quaterniond nearly_normalized(const Eigen::Quaterniond& q) {
   return Eigen::Quaterniond(q.coeffs() * (1.5 - 0.5 * q.squaredNorm()));
@@ -42,7 +52,10 @@ Preintegrator::Blocks::Blocks() {
 
 Preintegrator::Preintegrator(const ImuNoise& noise, const ImuBias& bias, int64_t t_begin_ns,
                              const std::optional<ImuIncrement>& previous)
-    : noise_(noise), previous_(previous) {
+    : noise_(noise),
+      gyro_bias_power_(wandering_power(noise.gyro_bias_power(), gyro_markov_bias(noise))),
+      accel_bias_power_(wandering_power(noise.accel_bias_power(), accel_markov_bias(noise))),
+      previous_(previous) {
   m_.t_begin_ns = m_.t_end_ns = t_begin_ns;
   m_.bias = bias;
 }
@@ -100,8 +113,8 @@ void Preintegrator::propagate_jacobians(const Matrix3d& C, const Matrix3d& D, co
 void Preintegrator::add_noise(double h, double q_g, double q_a) {
   cov_.ee.diagonal().array() += h * q_g;
   cov_.vv.diagonal().array() += h * q_a;
-  cov_.gg += h * noise_.gyro_bias_power();
-  cov_.aa += h * noise_.accel_bias_power();
+  cov_.gg += h * gyro_bias_power_;
+  cov_.aa += h * accel_bias_power_;
 }
 
 /// Decay of the biases over a sample, kept while samples are equally long.

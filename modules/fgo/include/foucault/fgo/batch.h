@@ -54,6 +54,7 @@ BatchSolution solve(BatchChain& chain, const FgoOptions& options, Preintegration
 /// interval may have to be integrated again.
 class BatchRecorder final : public Navigator, public Recording {
  public:
+  /// Throws UsageError for noise of the IMU that is zero, naming its key; a bias may be constant.
   BatchRecorder(std::unique_ptr<Navigator> forward, const FgoOptions& options,
                 PreintegrationModel model, const ImuNoise& noise);
 

@@ -29,6 +29,7 @@ namespace foucault {
 /// from there on. After a start or an outage that is the whole window, in calm times two nodes.
 class WindowNavigator final : public Navigator {
  public:
+  /// Throws UsageError for noise of the IMU that is zero, naming its key; a bias may be constant.
   WindowNavigator(const FgoOptions& options, PreintegrationModel model, const ImuNoise& noise);
   ~WindowNavigator() override;
 

@@ -54,7 +54,8 @@ struct Preintegration {
 /// The attitude error is kept in b_i, eps = C e_theta, in which (35) becomes
 ///     eps' = -C (bg + n_g),   v' = -[a x] eps - C (ba + n_a),   p' = v:
 /// only the skew of the velocity increment and C itself remain of the 15x15 products.
-/// Noise by the trapezoid rule, as (42); biases are the processes of MarkovBias.
+/// Noise by the trapezoid rule, as (42); biases are the processes of MarkovBias, and a constant one
+/// wanders by 1e-5 of its sigma in an hour.
 class Preintegrator {
  public:
   /// `previous`: the increment before the first, for coning and sculling.
@@ -94,6 +95,7 @@ class Preintegrator {
   };
 
   ImuNoise noise_;
+  double gyro_bias_power_, accel_bias_power_;
   std::optional<ImuIncrement> previous_;
   Preintegration m_;  ///< its J_dq_bg holds d eps / d bg until result()
   Eigen::Matrix3d C_ = Eigen::Matrix3d::Identity();

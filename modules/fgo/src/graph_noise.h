@@ -1,0 +1,11 @@
+#pragma once
+
+#include "foucault/inertial/imu_noise.h"
+
+namespace foucault {
+
+/// A graph weighs by inverse covariances: every error must have one.
+/// Throws UsageError naming the key of one that is zero.
+void require_noise(const ImuNoise& noise);
+
+}  // namespace foucault
