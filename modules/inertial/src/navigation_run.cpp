@@ -20,6 +20,7 @@
 #include "imu_hole.h"
 #include "known_biases.h"
 #include "plausibility.h"
+#include "sound_epoch.h"
 
 namespace foucault {
 
@@ -467,7 +468,18 @@ void NavigationRun::hold() {
 void NavigationRun::emit_epoch() {
   if (last_epoch_ns_ == time_ns_) return;
   last_epoch_ns_ = time_ns_;
-  sink_.epoch(navigator_->epoch());
+  const Epoch epoch = navigator_->epoch();
+  if (const std::optional<std::string> part = unsound_part(epoch)) throw_unsound(*part);
+  sink_.epoch(epoch);
+}
+
+void NavigationRun::throw_unsound(const std::string& part) const {
+  throw DataError(fmt::format(
+      "the solution's {} is not finite at {} ({}); cut what is damaged or far off there out of the "
+      "log, see `foucault check`, and look at the noise of the IMU (imu.*)",
+      part, text(time_ns_),
+      last_fix_ns_ ? "the last fix was used at " + text(*last_fix_ns_)
+                   : std::string("no fix was used since the start")));
 }
 
 // Fixes -----------------------------------------------------------------------------------------

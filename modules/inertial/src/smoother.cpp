@@ -1,7 +1,11 @@
 #include "foucault/inertial/smoother.h"
 
+#include <fmt/format.h>
+
+#include "foucault/core/error.h"
 #include "foucault/core/profile.h"
 #include "foucault/core/time.h"
+#include "sound_epoch.h"
 
 namespace foucault {
 namespace {
@@ -37,6 +41,16 @@ Vector9d error_between(double s, double length, const SmoothedEpoch& begin,
               length * b.segment<3>(kVelocity));
   error.segment<3>(kAttitude) = q_n_b.conjugate() * attitude_n;
   return error;
+}
+
+void throw_if_unsound(const std::vector<SmoothedEpoch>& nodes) {
+  for (const SmoothedEpoch& node : nodes) {
+    const std::optional<std::string> part = unsound_part(node.epoch);
+    if (!part) continue;
+    throw DataError(fmt::format(
+        "the smoothed solution's {} is not finite at {:.3f} s; see how far a forward method comes",
+        *part, to_seconds(node.epoch.t_ns)));
+  }
 }
 
 FixResult with_postfit(const FixResult& forward, const SmoothedEpoch& node) {
@@ -89,6 +103,7 @@ void Smoother::Keeper::give_out(Sink& sink) {
   recording_.mark();  // so that every epoch has a node after it
   const StageTimer timer(Stage::smooth);
   const std::vector<SmoothedEpoch> nodes = recording_.smoothed();
+  throw_if_unsound(nodes);
   const auto give = Overloaded{
       [&](const NodeEpoch& e) { sink.epoch(nodes[e.node].epoch); },
       [&](const BetweenEpoch& e) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include "foucault/core/error.h"
@@ -32,6 +33,7 @@ struct Log {
   std::vector<ImuIncrement> propagated;
   std::vector<Epoch> starts;
   std::vector<GnssFix> updates;
+  std::function<void(Epoch&)> spoil;  ///< the state from now on, if any
 
   void add(const char* what, double ms) {
     calls.push_back(std::string(what) + "@" + std::to_string(static_cast<int>(std::lround(ms))));
@@ -78,6 +80,7 @@ class FakeNavigator : public Navigator {
     epoch.t_ns = now_ns_;
     epoch.position = kPlace;
     epoch.velocity_n = velocity_n_;
+    if (log_.spoil) log_.spoil(epoch);
     return epoch;
   }
 
@@ -177,6 +180,36 @@ TEST_F(NavigationRunTest, SplitsIncrementsAtFixesAndRequests) {
   EXPECT_NEAR(dtheta.x(), 0.1 * 0.02, 1e-15);
   EXPECT_THAT(log_.calls, ElementsAre("update@23"));
   EXPECT_THAT(sink_.epochs_ms, ElementsAre(10, 23, 26));
+}
+
+class UnsoundState
+    : public NavigationRunTest,
+      public ::testing::WithParamInterface<std::pair<const char*, std::function<void(Epoch&)>>> {};
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+INSTANTIATE_TEST_SUITE_P(
+    Parts, UnsoundState,
+    ::testing::Values(std::pair("position", [](Epoch& e) { e.position.longitude = kNan; }),
+                      std::pair("velocity", [](Epoch& e) { e.velocity_n.y() = 1 / 0.0; }),
+                      std::pair("attitude", [](Epoch& e) { e.q_n_b.x() = kNan; }),
+                      std::pair("IMU biases", [](Epoch& e) { e.bias.accel.z() = kNan; }),
+                      std::pair("covariance", [](Epoch& e) { e.covariance(3, 8) = kNan; }),
+                      std::pair("covariance", [](Epoch& e) { e.covariance(7, 7) = -1e-9; })));
+
+TEST_P(UnsoundState, IsAnErrorAndNoRow) {
+  align();
+  run().process(fix_at(20));
+  feed_imu(10, 40);
+  run().process(fix_at(50));
+  log_.spoil = GetParam().second;
+  try {
+    feed_imu(40, 60);
+    FAIL() << "nothing thrown";
+  } catch (const DataError& error) {
+    EXPECT_THAT(error.what(), HasSubstr(std::string("the solution's ") + GetParam().first));
+    EXPECT_THAT(error.what(), HasSubstr("not finite at 1700000000.050 s"));
+    EXPECT_THAT(error.what(), HasSubstr("the last fix was used at 1700000000.050 s"));
+  }
+  EXPECT_THAT(sink_.epochs_ms, ElementsAre(10, 20));
 }
 
 TEST_F(NavigationRunTest, FixAtTheEndOfAnIncrementNeedsNoSplit) {

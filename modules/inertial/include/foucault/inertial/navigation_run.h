@@ -79,8 +79,8 @@ struct NavigationRunOptions {
 /// - Fixes up to the alignment's start stamp are not used again and have no FixResult.
 /// - After a new alignment the biases known before it still count, with doubled sigmas.
 /// process() throws DataError for what makes a recording useless: units of the IMU, turned axes,
-/// clocks that are seconds apart.
-/// Memory is bounded: before alignment, at most what the Aligner may still start from is held.
+/// clocks that are seconds apart; and at the first epoch that is not finite, so that none comes
+/// out. Memory is bounded: before alignment, at most what the Aligner may still start from is held.
 /// finish() throws DataError if there was no IMU, no usable fix, or no alignment, or if more than
 /// half of the increments had to be left out: why, and what to do about it.
 class NavigationRun : public Estimator {
@@ -162,6 +162,7 @@ class NavigationRun : public Estimator {
   void remember_fix_time();
   void hold();
   void emit_epoch();
+  [[noreturn]] void throw_unsound(const std::string& part) const;
   void notice_first_rejection(const GnssFix& fix, FixVerdict verdict);
 
   void weigh(const Innovation& innovation);

@@ -45,7 +45,8 @@ class Recording {
 /// Runs a recording navigator forward and gives out everything at finish(), epochs from all fixes.
 /// Innovations of fixes are those of the forward run, postfits those of the smoothed solution. With
 /// EpochRate::imu the epochs between nodes are interpolated, see between(); memory then grows by
-/// 200 bytes an epoch, else by what a node takes.
+/// 200 bytes an epoch, else by what a node takes. finish() throws DataError if a node's solution is
+/// not finite; nothing has been given out then.
 class Smoother : public Estimator {
  public:
   /// `recording` is what `navigator` leaves; both live as long as this.

@@ -1,0 +1,18 @@
+#include "sound_epoch.h"
+
+#include <cmath>
+
+namespace foucault {
+
+std::optional<std::string> unsound_part(const Epoch& epoch) {
+  const Geodetic& p = epoch.position;
+  if (!std::isfinite(p.latitude + p.longitude + p.height)) return "position";
+  if (!epoch.velocity_n.allFinite()) return "velocity";
+  if (!epoch.q_n_b.coeffs().allFinite()) return "attitude";
+  if (!epoch.bias.gyro.allFinite() || !epoch.bias.accel.allFinite()) return "IMU biases";
+  const bool not_negative = epoch.covariance.diagonal().minCoeff() >= 0;
+  if (!not_negative || !epoch.covariance.allFinite()) return "covariance";
+  return std::nullopt;
+}
+
+}  // namespace foucault

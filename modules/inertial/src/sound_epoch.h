@@ -1,0 +1,14 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "foucault/core/result.h"
+
+namespace foucault {
+
+/// Name of the first part of the epoch that is not finite, or of a variance below zero; none if the
+/// epoch is a solution.
+std::optional<std::string> unsound_part(const Epoch& epoch);
+
+}  // namespace foucault
