@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <new>
 #include <optional>
 #include <set>
 #include <utility>
@@ -60,8 +61,12 @@ class NamedEstimator : public Estimator {
   void naming(Work work) const {
     try {
       work();
-    } catch (const DataError& error) {
-      throw DataError(fmt::format("{}: {}", name_, error.what()));
+    } catch (const UsageError&) {
+      throw;
+    } catch (const std::bad_alloc&) {
+      throw;
+    } catch (const std::exception& error) {
+      throw EstimatorFailure(fmt::format("{}: {}", name_, error.what()));
     }
   }
 
@@ -209,6 +214,8 @@ Evaluation evaluate_what_is_there(const std::vector<EvaluationCase>& cases, int 
   for (const EvaluationCase& c : cases) check_logs({c.log}, c.settings);
   Evaluation evaluation;
   evaluation.results = run_experiments(runs, threads, console.progress_of("evaluating"));
+  evaluation.failures = take_out_failed(evaluation.results);
+  if (evaluation.results.empty()) throw DataError(evaluation.failures.front());
   evaluation.damages = notices.damages();
   for (const auto& [recording, of_log] : notices.notices()) warn(recording, of_log, console);
   for (const ExperimentResult& result : evaluation.results) warn(result, console);
@@ -219,6 +226,7 @@ std::vector<ExperimentResult> evaluate(const std::vector<EvaluationCase>& cases,
                                        Console& console) {
   Evaluation evaluation = evaluate_what_is_there(cases, threads, console);
   if (!evaluation.damages.empty()) throw DataError(evaluation.damages.front());
+  if (!evaluation.failures.empty()) throw DataError(evaluation.failures.front());
   return std::move(evaluation.results);
 }
 

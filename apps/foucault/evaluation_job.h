@@ -33,15 +33,17 @@ void check_logs(const std::vector<std::string>& logs, const Settings& settings);
 
 struct Evaluation {
   std::vector<ExperimentResult> results;
-  std::vector<std::string> damages;  ///< logs that break off, a line each; results are up to there
+  std::vector<std::string> damages;   ///< logs that break off, a line each; results are up to there
+  std::vector<std::string> failures;  ///< of methods, a line each; they have no results
 };
 
 /// Runs all cases on `threads` threads; results in the order of the cases, then of the shifts.
-/// Says what users should know about the data. Throws DataError, UsageError, Interrupted.
+/// Says what users should know about the data. Throws DataError, also if every method failed,
+/// UsageError, Interrupted.
 Evaluation evaluate_what_is_there(const std::vector<EvaluationCase>& cases, int threads,
                                   Console& console);
 
-/// The same with a DataError for a log that breaks off.
+/// The same with a DataError for a log that breaks off and a method that fails.
 std::vector<ExperimentResult> evaluate(const std::vector<EvaluationCase>& cases, int threads,
                                        Console& console);
 

@@ -64,9 +64,11 @@ void evaluate_logs(const EvaluateOptions& options, Call& call) {
     const std::filesystem::path page = std::filesystem::path(options.out) / "report" / "index.html";
     call.console.say(fmt::format("{:<10} {}", "report", page.string()));
   }
-  if (!evaluation.damages.empty()) {
+  std::vector<std::string> lacking = evaluation.damages;
+  lacking.insert(lacking.end(), evaluation.failures.begin(), evaluation.failures.end());
+  if (!lacking.empty()) {
     throw DataError(fmt::format("{}; the results in '{}' are of what is there",
-                                fmt::join(evaluation.damages, "; "), options.out));
+                                fmt::join(lacking, "; "), options.out));
   }
 }
 

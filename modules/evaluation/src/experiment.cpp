@@ -109,6 +109,10 @@ std::size_t count_distinct(const std::vector<ExperimentResult>& results,
   return names.size();
 }
 
+ExperimentResult without_results(const ExperimentRun& run) {
+  return {run.recording, run.imu, run.method, run.shift_s, {}, {}, {}, {}};
+}
+
 std::vector<double> maxima(const std::vector<MethodOutages::Entry>& entries,
                            double DriftValue::*component) {
   std::vector<double> values;
@@ -123,7 +127,7 @@ std::vector<double> maxima(const std::vector<MethodOutages::Entry>& entries,
 ExperimentResult run_experiment(const ExperimentRun& run,
                                 const std::function<void(double)>& progress) {
   RunWatcher watcher(progress);
-  ExperimentResult result{run.recording, run.imu, run.method, run.shift_s, {}, {}, {}};
+  ExperimentResult result = without_results(run);
   result.run =
       run_with_outages(run.open(), run.schedule, run.make_estimator, run.options, &watcher);
   result.track = watcher.track(result.run.truth);
@@ -145,11 +149,30 @@ std::vector<ExperimentResult> run_experiments(const std::vector<ExperimentRun>& 
   const std::vector<bool> earliest = earliest_of_recording(runs);
   std::vector<ExperimentResult> results(runs.size());
   const auto task = [&](std::size_t i, const TaskProgress& part) {
-    results[i] = run_experiment(runs[i], part);
+    try {
+      results[i] = run_experiment(runs[i], part);
+    } catch (const EstimatorFailure& failure) {
+      results[i] = without_results(runs[i]);
+      results[i].failure = failure.what();
+      return;
+    }
     if (earliest[i]) require_outage(runs[i], results[i].run);
   };
   run_tasks(runs.size(), threads, task, progress);
   return results;
+}
+
+std::vector<std::string> take_out_failed(std::vector<ExperimentResult>& results) {
+  std::vector<std::string> lines;
+  std::set<std::string> failed;
+  for (const ExperimentResult& result : results) {
+    if (result.failure.empty()) continue;
+    failed.insert(result.method);
+    lines.push_back(fmt::format("method {}: {}", result.method, result.failure));
+  }
+  const auto has_failed = [&](const ExperimentResult& r) { return failed.count(r.method) > 0; };
+  results.erase(std::remove_if(results.begin(), results.end(), has_failed), results.end());
+  return lines;
 }
 
 std::vector<double> MethodOutages::horizontal_max() const {

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "drifting_estimator.h"
 #include "foucault/core/error.h"
 
@@ -99,6 +101,33 @@ TEST(Experiment, OnlyCommonOutagesAreCompared) {
     EXPECT_EQ(outages[0].entries[i].drift->outage.begin_ns,
               outages[1].entries[i].drift->outage.begin_ns);
   }
+}
+
+/// Fails as soon as it gets an increment.
+class FailingEstimator : public Estimator {
+ public:
+  void process(const Measurement& measurement) override {
+    if (std::holds_alternative<ImuIncrement>(measurement)) throw EstimatorFailure("lost its way");
+  }
+  void finish() override {}
+};
+
+/// It is left out in every recording and shift, and the others stay.
+TEST(Experiment, AMethodThatFailsOnceTakesNoOtherWithIt) {
+  const std::string others = [] {
+    std::vector<ExperimentRun> runs = some_runs();
+    const auto is_bad = [](const ExperimentRun& run) { return run.method == "bad"; };
+    runs.erase(std::remove_if(runs.begin(), runs.end(), is_bad), runs.end());
+    return records_csv(run_experiments(runs, 2));
+  }();
+  std::vector<ExperimentRun> runs = some_runs();
+  runs[1].make_estimator = [](const Mounting&, Sink&) {
+    return std::make_unique<FailingEstimator>();
+  };
+  std::vector<ExperimentResult> results = run_experiments(runs, 2);
+  EXPECT_THAT(take_out_failed(results), testing::ElementsAre("method bad: lost its way"));
+  EXPECT_EQ(results.size(), 4u);
+  EXPECT_EQ(records_csv(results), others);
 }
 
 TEST(Experiment, AShortRecordingIsToldWhatToChange) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "foucault/core/error.h"
 #include "foucault/core/interfaces.h"
 #include "foucault/evaluation/drift_table.h"
 #include "foucault/evaluation/error_track.h"
@@ -28,6 +29,12 @@ struct ExperimentRun {
   OutageRunOptions options;
 };
 
+/// What the estimator of an experiment throws if it cannot go on; others may.
+class EstimatorFailure : public DataError {
+ public:
+  using DataError::DataError;
+};
+
 struct ExperimentResult {
   std::string recording;
   std::string imu;
@@ -36,6 +43,7 @@ struct ExperimentResult {
   OutageRunResult run;
   std::vector<TrackPoint> track;  ///< errors against the truth of `run`
   std::vector<Notice> notices;    ///< the first ones
+  std::string failure;            ///< of the estimator, one line; else empty
 };
 
 /// Runs one of them. `progress` gets the part done; what it throws goes through.
@@ -46,10 +54,15 @@ ExperimentResult run_experiment(const ExperimentRun& run,
 void require_outage(const ExperimentRun& run, const OutageRunResult& result);
 
 /// Runs all of them on `threads` threads; the results have the order of `runs` and, but for their
-/// CPU times, do not depend on the number of threads.
+/// CPU times, do not depend on the number of threads. A run whose estimator fails has nothing but
+/// its failure.
 /// Throws DataError for a recording without a single outage, naming what to change.
 std::vector<ExperimentResult> run_experiments(const std::vector<ExperimentRun>& runs, int threads,
                                               const std::function<void(double)>& progress = {});
+
+/// Takes out the methods that failed in any of their runs, since what is left of them would be
+/// compared with others on other outages. Gives a line for each failure.
+std::vector<std::string> take_out_failed(std::vector<ExperimentResult>& results);
 
 /// What runs are joined by: those of one IMU, of one recording, or all.
 enum class Grouping { imu, recording, all };
