@@ -1,9 +1,12 @@
 #include "foucault/ekf/ekf.h"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
 
 #include "foucault/core/profile.h"
 #include "foucault/core/so3.h"
+#include "foucault/core/time.h"
 
 namespace foucault {
 
@@ -41,8 +44,9 @@ EkfNavigator::EkfNavigator(const ImuNoise& imu, const EkfOptions& options)
       use_velocity_(options.use_velocity),
       cov_interval_(options.cov_interval_s) {}
 
+/// What is known of the scale factors outlives the motion: they are the sensors' own.
 void EkfNavigator::start(const Epoch& initial) {
-  state_ = {};
+  const ScaleCovariance scale = scale_covariance_at(initial.t_ns);
   state_.motion = {initial.t_ns, initial.position, initial.velocity_n, initial.q_n_b};
   state_.bias = initial.bias;
   R_n_b_ = initial.q_n_b.toRotationMatrix();
@@ -51,14 +55,18 @@ void EkfNavigator::start(const Epoch& initial) {
   covered_ = state_.motion;
   covariance_ = ekf::Matrix::Zero(noise_.size(), noise_.size());
   covariance_.topLeftCorner<error_state::kSize, error_state::kSize>() = initial.covariance;
-  if (noise_.with_scale) {
-    covariance_.diagonal()
-        .segment<3>(ekf::kGyroScale)
-        .setConstant(noise_.gyro_scale_sigma * noise_.gyro_scale_sigma);
-    covariance_.diagonal()
-        .segment<3>(ekf::kAccelScale)
-        .setConstant(noise_.accel_scale_sigma * noise_.accel_scale_sigma);
-  }
+  if (noise_.with_scale) covariance_.bottomRightCorner<6, 6>() = scale;
+}
+
+/// As the processes of the scale factors leave it; the steady state if there was no start before.
+EkfNavigator::ScaleCovariance EkfNavigator::scale_covariance_at(int64_t t_ns) const {
+  ScaleCovariance steady = ScaleCovariance::Zero();
+  steady.diagonal().head<3>().setConstant(std::pow(noise_.gyro_scale_sigma, 2));
+  steady.diagonal().tail<3>().setConstant(std::pow(noise_.accel_scale_sigma, 2));
+  if (covariance_.rows() != ekf::kSizeWithScale) return steady;
+  const double passed = std::max(0.0, seconds_between(covered_.t_ns, t_ns));
+  const double left = std::exp(-2 * passed / noise_.scale_tau);
+  return left * covariance_.bottomRightCorner<6, 6>() + (1 - left) * steady;
 }
 
 void EkfNavigator::propagate(const ImuIncrement& increment) {

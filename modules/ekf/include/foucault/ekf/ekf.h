@@ -32,6 +32,7 @@ class EkfNavigator : public Navigator {
  public:
   EkfNavigator(const ImuNoise& imu, const EkfOptions& options);
 
+  /// A new motion; scale factors that were learned before it are kept, uncorrelated with it.
   void start(const Epoch& initial) override;
   void propagate(const ImuIncrement& increment) override;
   Innovation innovation(const GnssFix& fix) const override;
@@ -59,6 +60,9 @@ class EkfNavigator : public Navigator {
     Eigen::Matrix3d noise;
   };
 
+  using ScaleCovariance = Eigen::Matrix<double, 6, 6>;
+
+  ScaleCovariance scale_covariance_at(int64_t t_ns) const;
   ekf::Transition pending() const;
   Observation position_observation(const GnssFix& fix) const;
   Observation velocity_observation(const GnssFix& fix) const;
