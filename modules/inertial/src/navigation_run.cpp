@@ -149,21 +149,49 @@ void NavigationRun::process_increment(const ImuIncrement& increment) {
 }
 
 void NavigationRun::process_fix(const GnssFix& fix) {
-  count_fix(fix);
-  const std::optional<int64_t> imu_ns = guard_->last_end_ns();
-  if (imu_ns && std::abs(fix.t_ns - *imu_ns) > kElsewhenNs) {
-    ++counts_.elsewhen;
-    if (!counts_.first_elsewhen_s) counts_.first_elsewhen_s = seconds_between(*imu_ns, fix.t_ns);
+  const FixClass fix_class = class_of(fix);
+  counts_.add(fix_class, fix.t_ns);
+  if (fix_class == FixClass::elsewhen) {
+    if (!counts_.first_elsewhen_s) {
+      counts_.first_elsewhen_s = seconds_between(*guard_->last_end_ns(), fix.t_ns);
+    }
     return;
   }
-  if (is_repeated(fix)) {
-    ++counts_.repeated;
+  if (fix_class == FixClass::repeated) {
     if (aligned_) leave_out(fix, FixVerdict::out_of_order);
     return;
   }
   last_fix_seen_ = fix;
   plausibility_->add(fix);
   pass_on(fix);
+}
+
+NavigationRun::FixClass NavigationRun::class_of(const GnssFix& fix) const {
+  const std::optional<int64_t> imu_ns = guard_->last_end_ns();
+  if (imu_ns && std::abs(fix.t_ns - *imu_ns) > kElsewhenNs) return FixClass::elsewhen;
+  if (is_repeated(fix)) return FixClass::repeated;
+  if (!position_is_valid(fix.antenna)) return FixClass::bad_position;
+  if (!covariance_is_valid(weighted(fix, options_.gnss).position_covariance)) {
+    return FixClass::bad_sigma;
+  }
+  if (fix.quality < quality_from(options_.gnss.min_quality)) return FixClass::low_quality;
+  return FixClass::usable;
+}
+
+void NavigationRun::Counts::add(FixClass fix_class, int64_t t_ns) {
+  Class& of_this = fixes[fix_class];
+  if (of_this.count++ == 0) of_this.first_ns = t_ns;
+}
+
+int64_t NavigationRun::Counts::of(FixClass fix_class) const {
+  const auto found = fixes.find(fix_class);
+  return found == fixes.end() ? 0 : found->second.count;
+}
+
+int64_t NavigationRun::Counts::all_fixes() const {
+  int64_t sum = 0;
+  for (const auto& [fix_class, of_this] : fixes) sum += of_this.count;
+  return sum;
 }
 
 bool NavigationRun::is_repeated(const GnssFix& fix) const {
@@ -179,20 +207,6 @@ void NavigationRun::leave_out(const GnssFix& fix, FixVerdict verdict) {
   result.quality = fix.quality;
   result.antenna = fix.antenna;
   sink_.fix(result);
-}
-
-void NavigationRun::count_fix(const GnssFix& fix) {
-  ++counts_.fixes;
-  const bool good_position = position_is_valid(fix.antenna);
-  const bool good_sigma = covariance_is_valid(weighted(fix, options_.gnss).position_covariance);
-  if (!good_position) {
-    ++counts_.bad_position;
-  } else if (!good_sigma) {
-    ++counts_.bad_sigma;
-  } else if (fix.quality < quality_from(options_.gnss.min_quality)) {
-    ++counts_.low_quality;
-  }
-  if ((!good_position || !good_sigma) && !counts_.first_bad_ns) counts_.first_bad_ns = fix.t_ns;
 }
 
 // Alignment -------------------------------------------------------------------------------------
@@ -656,16 +670,15 @@ std::optional<std::string> NavigationRun::misfit() const {
 void NavigationRun::notice_left_out() {
   std::vector<std::string> lines = guard_->summary();
   if (const std::optional<std::string> line = misfit()) lines.push_back(*line);
-  if (counts_.repeated > 0) {
-    lines.push_back(
-        fmt::format("{} fixes repeat the one before them and were left out", counts_.repeated));
+  if (const int64_t repeated = counts_.of(FixClass::repeated); repeated > 0) {
+    lines.push_back(fmt::format("{} fixes repeat the one before them and were left out", repeated));
   }
   if (counts_.late > 0) {
     lines.push_back(fmt::format(
         "{} fixes came after later ones and were left out; sort the log by time", counts_.late));
   }
-  if (counts_.elsewhen > 0) {
-    lines.push_back(fmt::format("{} fixes were left out, the first stamped {}", counts_.elsewhen,
+  if (const int64_t elsewhen = counts_.of(FixClass::elsewhen); elsewhen > 0) {
+    lines.push_back(fmt::format("{} fixes were left out, the first stamped {}", elsewhen,
                                 describe_mismatch(*counts_.first_elsewhen_s)));
   }
   for (const std::string& line : lines) sink_.notice({time_ns_, NoticeKind::skipped, line});
@@ -681,23 +694,37 @@ void NavigationRun::throw_if_nothing_usable() const {
     throw DataError(
         "no IMU data in the log; import a recording with angular rates and specific force");
   }
-  if (counts_.fixes == 0) {
+  const int64_t fixes = counts_.all_fixes();
+  if (fixes == 0) {
     throw DataError("no GNSS fix in the log; import a recording with positions");
   }
-  if (counts_.usable() > 0) return;
-  if (2 * counts_.elsewhen > counts_.fixes) {
+  if (counts_.of(FixClass::usable) > 0) return;
+  if (2 * counts_.of(FixClass::elsewhen) > fixes) {
     throw DataError(fmt::format("GNSS and IMU do not overlap in time: the fixes are stamped {}",
                                 describe_mismatch(*counts_.first_elsewhen_s)));
   }
-  throw DataError(fmt::format(
-      "none of the {} GNSS fixes can be used: {} with a sigma that is zero, negative or not "
-      "finite, "
-      "{} with a position that is not finite, {} below gnss.min_quality={}{}; give sigmas in the "
-      "import, or gnss.sigma_floor_m where they are zero",
-      counts_.fixes, counts_.bad_sigma, counts_.bad_position, counts_.low_quality,
-      options_.gnss.min_quality,
-      counts_.first_bad_ns ? fmt::format("; the first bad one at {}", text(*counts_.first_bad_ns))
-                           : std::string()));
+  throw DataError(
+      fmt::format("none of the {} GNSS fixes can be used: {}; give sigmas in the "
+                  "import, or gnss.sigma_floor_m where they are zero",
+                  fixes, unusable_fixes()));
+}
+
+/// How many of each kind, with the first: "4 with a sigma that ..., the first at ...".
+std::string NavigationRun::unusable_fixes() const {
+  const std::pair<FixClass, std::string> kinds[] = {
+      {FixClass::bad_sigma, "with a sigma that is zero, negative or not finite"},
+      {FixClass::bad_position, "with a position that is not finite"},
+      {FixClass::low_quality, "below gnss.min_quality=" + options_.gnss.min_quality},
+      {FixClass::repeated, "that repeat the one before them"},
+      {FixClass::elsewhen, "stamped far from the IMU"}};
+  std::string list;
+  for (const auto& [fix_class, what] : kinds) {
+    const auto found = counts_.fixes.find(fix_class);
+    if (found == counts_.fixes.end()) continue;
+    list += fmt::format("{}{} {}, the first at {}", list.empty() ? "" : "; ", found->second.count,
+                        what, text(found->second.first_ns));
+  }
+  return list;
 }
 
 }  // namespace foucault

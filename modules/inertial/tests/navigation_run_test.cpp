@@ -487,6 +487,20 @@ TEST_F(NavigationRunTest, FixesOfLowQualityAreLeftOut) {
   EXPECT_TRUE(log_.updates.empty());
 }
 
+TEST_F(NavigationRunTest, AFixOfTwoFaultsCountsOnce) {
+  options_.gnss.min_quality = "fixed_rtk";
+  align();
+  GnssFix floating = fix_at(20);
+  floating.quality = FixQuality::float_rtk;
+  run().process(floating);
+  run().process(floating);
+  run().process(floating);
+  run().process(fix_at(30));
+  feed_imu(10, 40);
+  EXPECT_EQ(log_.updates.size(), 1u);
+  EXPECT_EQ(error_of_finish(), "");
+}
+
 TEST_F(NavigationRunTest, SigmasAreScaledAndFloored) {
   options_.gnss.sigma_scale = 2;
   options_.gnss.sigma_floor_m = 0.3;

@@ -103,24 +103,24 @@ class NavigationRun : public Estimator {
     void add(const ImuIncrement& increment);
   };
 
+  /// What a fix is before anything is known of the state: the first of these that holds.
+  enum class FixClass { elsewhen, repeated, bad_position, bad_sigma, low_quality, usable };
+
   struct Counts {
+    struct Class {
+      int64_t count = 0;
+      int64_t first_ns = 0;
+    };
+    std::map<FixClass, Class> fixes;
     int64_t increments = 0;
-    int64_t fixes = 0;
-    int64_t bad_sigma = 0;
-    int64_t bad_position = 0;
-    int64_t low_quality = 0;
-    int64_t repeated = 0;
     int64_t late = 0;
-    int64_t elsewhen = 0;                    ///< stamped far from the IMU
-    std::optional<double> first_elsewhen_s;  ///< by how much
-    std::optional<int64_t> first_bad_ns;
-    int64_t usable() const {
-      return fixes - bad_sigma - bad_position - low_quality - repeated - elsewhen;
-    }
+    std::optional<double> first_elsewhen_s;  ///< by how much the first of these is off
+    void add(FixClass fix_class, int64_t t_ns);
+    int64_t of(FixClass fix_class) const;
+    int64_t all_fixes() const;
   };
 
-  void count(const Measurement& measurement);
-  void count_fix(const GnssFix& fix);
+  FixClass class_of(const GnssFix& fix) const;
   void process_increment(const ImuIncrement& increment);
   void process_fix(const GnssFix& fix);
   void pass_on(const Measurement& measurement);
@@ -169,6 +169,7 @@ class NavigationRun : public Estimator {
   void notice_left_out();
   std::optional<std::string> misfit() const;
   void throw_if_nothing_usable() const;
+  std::string unusable_fixes() const;
 
   std::unique_ptr<Navigator> navigator_;
   Aligner aligner_;
