@@ -60,9 +60,9 @@ bool finite(const Geodetic& position) {
          std::isfinite(position.height);
 }
 
-bool finite(const GnssFix& fix) {
-  return finite(fix.antenna) && fix.position_covariance.allFinite() &&
-         (!fix.velocity_n || (fix.velocity_n->allFinite() && fix.velocity_covariance.allFinite()));
+/// A velocity that is no number does not spoil a position.
+bool velocity_finite(const GnssFix& fix) {
+  return fix.velocity_n->allFinite() && fix.velocity_covariance.allFinite();
 }
 
 bool finite(const ImuSample& sample) {
@@ -107,7 +107,7 @@ class OverviewScan {
 
   void take_fix(const mrpt::obs::CObservationGPS& gps) {
     const std::optional<GnssFix> fix = rawlog::decode_fix(gps, 0, false);
-    if (!fix || !finite(fix->antenna)) return;
+    if (!fix || !is_position(fix->antenna)) return;
     overview_.gnss_label = gps.sensorLabel;
     overview_.antenna = rawlog::from_mrpt(gps.sensorPose);
     overview_.first_fix = fix->antenna;
@@ -367,7 +367,16 @@ void RawlogSource::Impl::take_gps(const mrpt::obs::CObservationGPS& gps, int64_t
   std::optional<GnssFix> fix = rawlog::decode_fix(gps, t_ns, options_.gnss_velocity);
   if (!fix) return skip(kGps, "no position");
   fix->p_b_a = lever_arm_to(rawlog::from_mrpt(gps.sensorPose));
-  if (!finite(*fix) || !fix->p_b_a.allFinite()) return skip_noted(kGps, kNotFinite, t_ns);
+  if (!finite(fix->antenna) || !fix->position_covariance.allFinite() || !fix->p_b_a.allFinite()) {
+    return skip_noted(kGps, kNotFinite, t_ns);
+  }
+  if (!is_position(fix->antenna)) {
+    return skip_noted(kGps, "latitude and longitude zero, or out of range", t_ns);
+  }
+  if (fix->velocity_n && !velocity_finite(*fix)) {
+    fix->velocity_n.reset();
+    skip_noted("velocity of CObservationGPS", kNotFinite, t_ns);
+  }
   fix_span_.add(t_ns);
   if (add(*fix)) ++counts_.fixes;
 }

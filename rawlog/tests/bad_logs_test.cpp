@@ -344,6 +344,25 @@ TEST_F(BadLogs, NothingFinite) {
   EXPECT_THAT(error(scratch_.path("a.rawlog")), HasSubstr("no IMU sample of it is finite"));
 }
 
+TEST_F(BadLogs, PositionsOfZeroAreNoFixes) {
+  {
+    test::GzLog log(scratch_.path("a.rawlog"));
+    for (int64_t i = 0; i < 40; ++i) {
+      log.write(imu_at(kBegin + i * 10 * kMs));
+      auto gps = gps_at(kBegin + i * 10 * kMs);
+      auto message = test::gga();
+      if (i < 10) message.fields.latitude_degrees = message.fields.longitude_degrees = 0;
+      gps.setMsg(message);
+      log.write(gps);
+    }
+  }
+  const Reading reading = read_through(scratch_.path("a.rawlog"));
+  EXPECT_EQ(reading.counts.fixes, 30);
+  ASSERT_EQ(reading.notices.size(), 1U);
+  EXPECT_THAT(reading.notices[0].text, HasSubstr("10 x CObservationGPS (latitude and longitude"));
+  EXPECT_EQ(reading.notices[0].t_ns, kBegin);
+}
+
 TEST_F(BadLogs, ValuesThatAreNotFiniteAreSkippedCountedAndNamed) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   {

@@ -39,7 +39,8 @@ Deviation deviation(const GnssFix& fix, const GnssFix& a, const GnssFix& b) {
 std::optional<FixScreen::Screened> FixScreen::next(bool all) {
   if (waiting_.empty()) return std::nullopt;
   Screened screened{waiting_.front(), true};
-  if (const auto* fix = std::get_if<GnssFix>(&screened.measurement)) {
+  const auto* fix = std::get_if<GnssFix>(&screened.measurement);
+  if (fix != nullptr && fix->position_covariance.allFinite()) {
     const std::optional<GnssFix> after = second_fix();
     const bool waited = seconds_between(fix->t_ns, stamp(waiting_.back())) > kLongestWait;
     if (before_ && !after && !waited && !all) return std::nullopt;
@@ -55,7 +56,8 @@ std::optional<FixScreen::Screened> FixScreen::next(bool all) {
 
 std::optional<GnssFix> FixScreen::second_fix() const {
   for (std::size_t i = 1; i < waiting_.size(); ++i) {
-    if (const auto* fix = std::get_if<GnssFix>(&waiting_[i])) return *fix;
+    const auto* fix = std::get_if<GnssFix>(&waiting_[i]);
+    if (fix != nullptr && fix->position_covariance.allFinite()) return *fix;
   }
   return std::nullopt;
 }

@@ -71,7 +71,8 @@ std::optional<CourseAfter> course_after(const ImuHole& hole, const std::deque<Me
   for (const Measurement& measurement : after) {
     if (const auto* increment = std::get_if<ImuIncrement>(&measurement)) turn.add(*increment);
     const auto* fix = std::get_if<GnssFix>(&measurement);
-    if (!fix || fix->t_ns < hole.after.t_begin_ns) continue;
+    if (!fix || fix->t_ns < hole.after.t_begin_ns || !fix->position_covariance.allFinite())
+      continue;
     std::optional<CourseAfter> course = course_by_velocity(*fix, turn.turned());
     if (!course && first) {
       course = course_by_way(*first, turned_first, *fix, turn.turned());

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "course_finder.h"
+#include "fix_guard.h"
 #include "foucault/core/time.h"
 #include "foucault/geodesy/local_frame.h"
 #include "foucault/inertial/time_mismatch.h"
@@ -294,8 +295,12 @@ void judge_stream(const StreamFacts& stream, const std::string& name, double lon
 }
 
 constexpr const char* kSamples = "IMU samples";
+constexpr const char* kFixes = "GNSS fixes";
 
 void judge_samples(const LogFacts& facts, Judgement& out) {
+  for (const std::string& line : facts.bad_fixes) {
+    out.warn(kFixes, line, "`foucault run` does without; find out why the receiver writes them");
+  }
   for (const std::string& line : facts.bad_samples) {
     out.warn(kSamples, line, "`foucault run` bridges what is missing; find out why it is");
   }
@@ -463,8 +468,11 @@ class LogChecker::Impl {
     coarse_.add(increment);
   }
 
-  void add(const GnssFix& fix) {
-    gnss_.add(fix.t_ns);
+  void add(const GnssFix& given) {
+    gnss_.add(given.t_ns);
+    const std::optional<GnssFix> usable = fix_guard_.look_at(given);
+    if (!usable) return;
+    const GnssFix& fix = *usable;
     if (!lever_arm_) lever_arm_ = fix.p_b_a.norm();
     const Vector3d variance = fix.position_covariance.diagonal();
     if (!variance.allFinite() || variance.minCoeff() <= 0) {
@@ -474,7 +482,6 @@ class LogChecker::Impl {
     const double sigma = horizontal_sigma(fix.position_covariance);
     smallest_ = smallest_ > 0 ? std::min(smallest_, sigma) : sigma;
     largest_ = std::max(largest_, sigma);
-    if (!std::isfinite(fix.antenna.latitude) || !std::isfinite(fix.antenna.longitude)) return;
     rest_.add(fix);
     acceleration_.add(fix);
     fine_.add(fix);
@@ -496,6 +503,7 @@ class LogChecker::Impl {
     facts.turns = turns();
     facts.acceleration_match = acceleration_.correlation();
     facts.bad_samples = guard_.summary();
+    facts.bad_fixes = fix_guard_.summary();
     return facts;
   }
 
@@ -514,6 +522,7 @@ class LogChecker::Impl {
   RestWatch rest_;
   AccelerationMatch acceleration_;
   ImuGuard guard_;
+  FixGuard fix_guard_;
   TurnMatcher fine_{1.0, 0.02}, coarse_{25, 0.25};
   Vector3d force_sum_b_ = Vector3d::Zero();
   double force_time_ = 0;
@@ -538,7 +547,8 @@ std::vector<Finding> LogChecker::findings() const { return judge(facts(), impl_-
 std::vector<Notice> LogChecker::warnings() const {
   std::vector<Notice> warnings;
   for (const Finding& finding : findings()) {
-    if (finding.severity == Severity::ok || finding.subject == kSamples) continue;
+    if (finding.severity == Severity::ok) continue;
+    if (finding.subject == kSamples || finding.subject == kFixes) continue;
     warnings.push_back({facts().imu.first_ns, NoticeKind::skipped,
                         fmt::format("{}: {} ({})", finding.subject, finding.text, finding.remedy)});
   }

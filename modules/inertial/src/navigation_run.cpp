@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "fix_doubt.h"
+#include "fix_guard.h"
 #include "fix_judge.h"
 #include "fix_screen.h"
 #include "foucault/core/error.h"
@@ -32,7 +33,6 @@ constexpr double kLongestWait = 3;             // [s], for fixes after a hole
 constexpr double kNoticeableGap = 0.2;         // [s]: a few lost samples are not worth a line
 /// Fixes further from the IMU in time are of another recording, or of another clock.
 constexpr int64_t kElsewhenNs = 3600 * kNanosecondsPerSecond;
-constexpr double kPi = 3.14159265358979323846;
 
 std::string text(int64_t t_ns) { return fmt::format("{:.3f} s", to_seconds(t_ns)); }
 
@@ -43,11 +43,6 @@ FixQuality quality_from(const std::string& name) {
   if (name == "float_rtk") return FixQuality::float_rtk;
   if (name == "fixed_rtk") return FixQuality::fixed_rtk;
   return FixQuality::unknown;
-}
-
-bool position_is_valid(const Geodetic& position) {
-  return std::isfinite(position.latitude) && std::isfinite(position.longitude) &&
-         std::isfinite(position.height) && std::abs(position.latitude) <= kPi / 2;
 }
 
 /// The fix with the sigmas of the configuration.
@@ -109,6 +104,7 @@ NavigationRun::NavigationRun(std::unique_ptr<Navigator> navigator, Aligner align
       options_(options),
       sink_(sink),
       guard_(std::make_unique<ImuGuard>()),
+      fix_guard_(std::make_unique<FixGuard>()),
       plausibility_(std::make_unique<Plausibility>()),
       screen_(std::make_unique<FixScreen>()),
       judge_(std::make_unique<FixJudge>(options.gnss)) {}
@@ -149,28 +145,38 @@ void NavigationRun::process_increment(const ImuIncrement& increment) {
 }
 
 void NavigationRun::process_fix(const GnssFix& fix) {
-  const FixClass fix_class = class_of(fix);
+  GnssFix usable = fix;
+  const FixClass fix_class = classify(usable);
   counts_.add(fix_class, fix.t_ns);
-  if (fix_class == FixClass::elsewhen) {
-    if (!counts_.first_elsewhen_s) {
-      counts_.first_elsewhen_s = seconds_between(*guard_->last_end_ns(), fix.t_ns);
-    }
-    return;
+  switch (fix_class) {
+    case FixClass::elsewhen:
+      if (!counts_.first_elsewhen_s) {
+        counts_.first_elsewhen_s = seconds_between(*guard_->last_end_ns(), fix.t_ns);
+      }
+      return;
+    case FixClass::repeated:
+      return leave_out(fix, FixVerdict::out_of_order);
+    case FixClass::bad_position:
+      return leave_out(fix, FixVerdict::bad_sigma);
+    case FixClass::usable:
+      plausibility_->add(usable);
+      break;
+    case FixClass::bad_sigma:
+    case FixClass::low_quality:
+      break;
   }
-  if (fix_class == FixClass::repeated) {
-    if (aligned_) leave_out(fix, FixVerdict::out_of_order);
-    return;
-  }
-  last_fix_seen_ = fix;
-  plausibility_->add(fix);
-  pass_on(fix);
+  pass_on(usable);
 }
 
-NavigationRun::FixClass NavigationRun::class_of(const GnssFix& fix) const {
+/// What is not to be used of a fix that is good otherwise is taken off it.
+NavigationRun::FixClass NavigationRun::classify(GnssFix& fix) {
   const std::optional<int64_t> imu_ns = guard_->last_end_ns();
   if (imu_ns && std::abs(fix.t_ns - *imu_ns) > kElsewhenNs) return FixClass::elsewhen;
   if (is_repeated(fix)) return FixClass::repeated;
-  if (!position_is_valid(fix.antenna)) return FixClass::bad_position;
+  last_fix_seen_ = fix;
+  const std::optional<GnssFix> usable = fix_guard_->look_at(fix);
+  if (!usable) return FixClass::bad_position;
+  fix = *usable;
   if (!covariance_is_valid(weighted(fix, options_.gnss).position_covariance)) {
     return FixClass::bad_sigma;
   }
@@ -201,6 +207,7 @@ bool NavigationRun::is_repeated(const GnssFix& fix) const {
 }
 
 void NavigationRun::leave_out(const GnssFix& fix, FixVerdict verdict) {
+  if (!aligned_) return;
   FixResult result;
   result.t_ns = fix.t_ns;
   result.verdict = verdict;
@@ -212,7 +219,7 @@ void NavigationRun::leave_out(const GnssFix& fix, FixVerdict verdict) {
 // Alignment -------------------------------------------------------------------------------------
 
 bool NavigationRun::may_align(const GnssFix& fix) const {
-  return position_is_valid(fix.antenna) &&
+  return is_position(fix.antenna) &&
          covariance_is_valid(weighted(fix, options_.gnss).position_covariance) &&
          fix.quality >= quality_from(options_.gnss.min_quality);
 }
@@ -505,7 +512,7 @@ void NavigationRun::handle_fix(const GnssFix& fix) {
   result.quality = fix.quality;
   result.antenna = fix.antenna;
   const GnssFix trusted = weighted(fix, options_.gnss);
-  if (!position_is_valid(fix.antenna) || !covariance_is_valid(trusted.position_covariance)) {
+  if (!is_position(fix.antenna) || !covariance_is_valid(trusted.position_covariance)) {
     result.verdict = FixVerdict::bad_sigma;
   } else {
     const Innovation innovation = navigator_->innovation(trusted);
@@ -669,6 +676,7 @@ std::optional<std::string> NavigationRun::misfit() const {
 
 void NavigationRun::notice_left_out() {
   std::vector<std::string> lines = guard_->summary();
+  for (const std::string& line : fix_guard_->summary()) lines.push_back(line);
   if (const std::optional<std::string> line = misfit()) lines.push_back(*line);
   if (const int64_t repeated = counts_.of(FixClass::repeated); repeated > 0) {
     lines.push_back(fmt::format("{} fixes repeat the one before them and were left out", repeated));
@@ -713,7 +721,7 @@ void NavigationRun::throw_if_nothing_usable() const {
 std::string NavigationRun::unusable_fixes() const {
   const std::pair<FixClass, std::string> kinds[] = {
       {FixClass::bad_sigma, "with a sigma that is zero, negative or not finite"},
-      {FixClass::bad_position, "with a position that is not finite"},
+      {FixClass::bad_position, "with no position (zero, not finite, out of range or reach)"},
       {FixClass::low_quality, "below gnss.min_quality=" + options_.gnss.min_quality},
       {FixClass::repeated, "that repeat the one before them"},
       {FixClass::elsewhen, "stamped far from the IMU"}};

@@ -72,7 +72,7 @@ void TurnMatcher::add(const ImuIncrement& increment) {
 }
 
 void TurnMatcher::add(const GnssFix& fix) {
-  if (!fix.position_covariance.allFinite() || !std::isfinite(fix.antenna.height)) return;
+  if (!fix.position_covariance.allFinite() || !is_position(fix.antenna)) return;
   if (!anchor_ || seconds_between(anchor_->t_ns, fix.t_ns) > kLongestCourse ||
       fix.t_ns <= anchor_->t_ns) {
     anchor_ = fix;

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "foucault/core/time.h"
 #include "foucault/inertial/turn_match.h"
 #include "foucault/simulation/faults.h"
@@ -74,6 +76,49 @@ TEST(LogCheck, NamesClocksUnitsAndAxes) {
   EXPECT_EQ(severity_of(FaultKind::imu_axes_turned, 0, "gravity"), Severity::error);
   EXPECT_EQ(severity_of(FaultKind::fix_sigma_zero, 0, "sigmas"), Severity::warning);
   EXPECT_EQ(severity_of(FaultKind::fix_sigma_scale, 0.1, "sigmas"), Severity::warning);
+}
+
+/// Fixes that are no positions, before all others and among them.
+class WithBadFixes : public Source {
+ public:
+  explicit WithBadFixes(std::unique_ptr<Source> source) : source_(std::move(source)) {}
+  std::optional<Measurement> next() override {
+    std::optional<Measurement> m = source_->next();
+    if (auto* fix = m ? std::get_if<GnssFix>(&*m) : nullptr) {
+      ++fixes_;
+      if (fixes_ == 3) fix->antenna.latitude = std::nan("");
+      if (fixes_ < 3 || fixes_ == 100) fix->antenna = Geodetic{0, 0, 0};
+    }
+    return m;
+  }
+  const Mounting& mounting() const override { return source_->mounting(); }
+  double progress() const override { return source_->progress(); }
+
+ private:
+  std::unique_ptr<Source> source_;
+  int fixes_ = 0;
+};
+
+TEST(LogCheck, FixesThatAreNoPositionsBlindNothingAndAreNamed) {
+  WithBadFixes source(std::make_unique<FaultySource>(
+      std::make_unique<SimulatedSource>(city(), imu_preset("ADIS16465")),
+      std::vector<Fault>{{FaultKind::imu_stamps_offset, 0, 1e9, 18}}, 1));
+  LogChecker checker(imu_preset("ADIS16465"), source.mounting());
+  while (const std::optional<Measurement> m = source.next()) checker.add(*m);
+  EXPECT_EQ(finding(checker.findings(), "time offset").severity, Severity::error);
+  EXPECT_EQ(finding(checker.findings(), "GNSS fixes").severity, Severity::warning);
+  EXPECT_THAT(finding(checker.findings(), "GNSS fixes").text, HasSubstr("4 fixes are no pos"));
+}
+
+TEST(TurnMatch, AFixThatIsNoPositionDoesNotBlindIt) {
+  WithBadFixes source(std::make_unique<SimulatedSource>(city(), imu_preset("ADIS16465")));
+  TurnMatcher matcher(1, 0.02);
+  while (const std::optional<Measurement> m = source.next()) {
+    if (const auto* fix = std::get_if<GnssFix>(&*m)) matcher.add(*fix);
+    if (const auto* increment = std::get_if<ImuIncrement>(&*m)) matcher.add(*increment);
+  }
+  ASSERT_TRUE(matcher.best().has_value());
+  EXPECT_NEAR(matcher.best()->slope, 1, 0.05);
 }
 
 TEST(LogCheck, ForwardThatIsBackward) {

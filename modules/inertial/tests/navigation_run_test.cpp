@@ -501,6 +501,80 @@ TEST_F(NavigationRunTest, AFixOfTwoFaultsCountsOnce) {
   EXPECT_EQ(error_of_finish(), "");
 }
 
+TEST_F(NavigationRunTest, WhatIsNoPositionIsLeftOutCountedAndNamed) {
+  options_.gnss.gate_false_alarm = 0;  // not the gate's doing
+  align();
+  for (int i = 2; i < 12; ++i) {
+    GnssFix none = fix_at(10 * i);
+    none.antenna = Geodetic{0, 0, 0};
+    run().process(none);
+  }
+  GnssFix in_space = fix_at(125);
+  in_space.antenna.height = 1.9e6;
+  run().process(in_space);
+  run().process(fix_at(130));
+  feed_imu(10, 140);
+  run().finish();
+  EXPECT_THAT(log_.calls, ElementsAre("update@130"));
+  EXPECT_EQ(sink_.fixes.size(), 12u);
+  EXPECT_THAT(sink_.notices.back().text, HasSubstr("11 fixes are no positions"));
+  EXPECT_THAT(sink_.notices.back().text, HasSubstr("1700000000.020"));
+}
+
+TEST_F(NavigationRunTest, FixesThatNoVehicleReachesAreLeftOut) {
+  options_.gnss.gate_false_alarm = 0;
+  align();
+  for (int i = 2; i < 22; ++i) run().process(fix_at(10 * i));
+  for (int i = 22; i < 32; ++i) run().process(fix_at(10 * i, Vector3d(0, 5e5, 0)));
+  for (int i = 32; i < 42; ++i) run().process(fix_at(10 * i));
+  feed_imu(10, 500);
+  run().finish();
+  EXPECT_EQ(log_.updates.size(), 30u);
+  EXPECT_THAT(sink_.notices.back().text, HasSubstr("10 fixes lie where no vehicle gets to"));
+}
+
+TEST_F(NavigationRunTest, AWrongFirstFixCostsOneGoodOne) {
+  run().process(fix_at(-10, Vector3d(5e5, 0, 0)));
+  feed_imu(-20, 10);
+  for (int i = 1; i < 6; ++i) run().process(fix_at(10 * i));
+  feed_imu(10, 60);
+  run().finish();
+  EXPECT_THAT(sink_.notices.back().text, HasSubstr("1 fixes lie where no vehicle gets to"));
+}
+
+TEST_F(NavigationRunTest, AVelocityThatIsNoNumberLeavesThePosition) {
+  align();
+  GnssFix fix = fix_at(20);
+  fix.velocity_n->x() = std::numeric_limits<double>::quiet_NaN();
+  run().process(fix);
+  fix = fix_at(30);
+  fix.velocity_covariance(1, 1) = std::numeric_limits<double>::quiet_NaN();
+  run().process(fix);
+  feed_imu(10, 50);
+  ASSERT_EQ(log_.updates.size(), 2u);
+  for (const GnssFix& used : log_.updates) EXPECT_FALSE(used.velocity_n.has_value());
+}
+
+TEST_F(NavigationRunTest, AFixWithoutSigmaTellsNoTurnOverAHole) {
+  velocity_n_ = Vector3d(10, 0, 0);
+  align();
+  feed_imu(10, 500);
+  log_.propagated.clear();
+  feed_imu(3500, 3600);
+  for (const double ms : {3605.0, 4605.0}) {
+    GnssFix nan = fix_at(ms, Vector3d(0, ms / 100, 0));
+    nan.position_covariance.setConstant(std::numeric_limits<double>::quiet_NaN());
+    run().process(nan);
+    feed_imu(ms - 5, ms + 995);
+  }
+  run().finish();
+  ASSERT_FALSE(log_.propagated.empty());
+  for (const ImuIncrement& increment : log_.propagated) {
+    EXPECT_TRUE(std::isfinite(increment.extra_gyro_noise_density));
+    EXPECT_TRUE(increment.dtheta_b.allFinite());
+  }
+}
+
 TEST_F(NavigationRunTest, SigmasAreScaledAndFloored) {
   options_.gnss.sigma_scale = 2;
   options_.gnss.sigma_floor_m = 0.3;

@@ -46,6 +46,7 @@ struct RestFacts {
 struct LogFacts {
   StreamFacts imu, gnss;
   std::vector<std::string> bad_samples;  ///< of the IMU, a line a kind: how many, the first
+  std::vector<std::string> bad_fixes;    ///< the same of GNSS
   double overlap_s = 0;
   int64_t bad_sigmas = 0;
   double smallest_sigma_m = 0, largest_sigma_m = 0;        ///< horizontal, of fixes
@@ -68,8 +69,8 @@ class LogChecker {
   LogFacts facts() const;
   /// Everything that was looked at, also what is well.
   std::vector<Finding> findings() const;
-  /// Those that are not well, stamped where the IMU begins, but for samples that a NavigationRun
-  /// names itself.
+  /// Those that are not well, stamped where the IMU begins, but for samples and fixes that
+  /// a NavigationRun names itself.
   std::vector<Notice> warnings() const;
 
  private:

@@ -40,6 +40,7 @@ class GapOptions : public Configurable {
 };
 
 class FixDoubt;
+class FixGuard;
 class FixJudge;
 class FixScreen;
 class ImuGuard;
@@ -70,6 +71,8 @@ struct NavigationRunOptions {
 ///   bad fixes nor a wrong state locks the other out for more than 90 s. After a hole, and from a
 ///   fix better in quality than the last used, the gate is open for ten seconds.
 /// - Before the alignment, fixes that no vehicle can reach from their neighbours are left out.
+/// - Fixes that are no position, or that no vehicle reaches from the others, are left out, counted
+///   and named.
 /// - Fixes that repeat the one before them, come late, or are stamped more than an hour from the
 ///   IMU are left out (out_of_order).
 /// - Increments that are not finite, or do not come after the one before, are left out, counted and
@@ -120,7 +123,7 @@ class NavigationRun : public Estimator {
     int64_t all_fixes() const;
   };
 
-  FixClass class_of(const GnssFix& fix) const;
+  FixClass classify(GnssFix& fix);
   void process_increment(const ImuIncrement& increment);
   void process_fix(const GnssFix& fix);
   void pass_on(const Measurement& measurement);
@@ -184,6 +187,7 @@ class NavigationRun : public Estimator {
   std::optional<int64_t> last_fix_ns_;
   int64_t fix_interval_ns_ = 0;
   std::unique_ptr<ImuGuard> guard_;
+  std::unique_ptr<FixGuard> fix_guard_;
   std::unique_ptr<Plausibility> plausibility_;
   std::unique_ptr<FixScreen> screen_;
   std::unique_ptr<FixJudge> judge_;

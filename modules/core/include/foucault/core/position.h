@@ -1,0 +1,19 @@
+#pragma once
+
+#include <cmath>
+
+#include "foucault/core/measurement.h"
+
+namespace foucault {
+
+/// Whether a receiver can have been there: finite, on the Earth or up to 100 km above or below its
+/// ellipsoid, where space begins, and not at latitude and longitude zero, which receivers write
+/// while they have no fix.
+inline bool is_position(const Geodetic& position) {
+  constexpr double kPi = 3.14159265358979323846, kHighest = 1e5;
+  const double latitude = std::abs(position.latitude), longitude = std::abs(position.longitude);
+  return latitude <= kPi / 2 && longitude <= 2 * kPi && std::abs(position.height) <= kHighest &&
+         latitude + longitude > 0;
+}
+
+}  // namespace foucault
