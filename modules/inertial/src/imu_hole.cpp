@@ -88,6 +88,14 @@ std::optional<CourseAfter> course_after(const ImuHole& hole, const std::deque<Me
 
 }  // namespace
 
+/// The first increment after a hole may be of any length, 100 ns where stamps are slips. Made-up
+/// rates are linear in time: the bound, 5 ms in the longest hole there is by default, costs
+/// nothing.
+int64_t ImuHole::step_ns() const {
+  constexpr double kMostSteps = 2000;
+  return std::max<int64_t>(nanoseconds(std::max(interval, length() / kMostSteps)), 1);
+}
+
 std::optional<HoleTurn> turn_over(const ImuHole& hole, const std::deque<Measurement>& after) {
   const Vector3d& velocity = hole.before.velocity_n;
   const double speed = velocity.head<2>().norm();

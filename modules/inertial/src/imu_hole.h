@@ -22,10 +22,13 @@ struct ImuHole {
   Epoch before;                                              ///< state where the data end
   Eigen::Vector3d gyro_before_b = Eigen::Vector3d::Zero();   ///< mean rates there [rad/s]
   Eigen::Vector3d accel_before_b = Eigen::Vector3d::Zero();  ///< [m/s^2]
+  double interval = 0;                                       ///< length of increments there [s]
   ImuIncrement after;                                        ///< the first increment after it
   std::optional<HoleTurn> turn;
 
   double length() const { return seconds_between(before.t_ns, after.t_begin_ns); }  ///< [s]
+  /// Of what is made up for it: as long as increments before it, at most kMostSteps of them.
+  int64_t step_ns() const;
 };
 
 /// What the course tells about a hole: the course before it from the state's velocity, the course

@@ -134,6 +134,7 @@ void NavigationRun::process_increment(const ImuIncrement& increment) {
   }
   if (!verdict.increment) return;
   ++counts_.increments;
+  usual_interval_.add(verdict.increment->dt());
   ImuIncrement usable = *verdict.increment;
   if (verdict.accel_repeats) {
     constexpr double kRepeatLasts = 3;  // [s] that the error stays the same
@@ -361,6 +362,7 @@ void NavigationRun::meet_hole(const ImuIncrement& next) {
   hole_->before.t_ns = time_ns_;
   hole_->gyro_before_b = recent_.gyro_b;
   hole_->accel_before_b = recent_.accel_b;
+  hole_->interval = usual_interval_.length;
   hole_->after = next;
   recent_ = RecentRates();
   beyond_hole_.push_back(next);
@@ -395,7 +397,7 @@ void NavigationRun::leave_hole() {
   const bool noticeable = hole->length() >= kNoticeableGap;
   if (noticeable) judge_->doubt_state(hole->after.t_begin_ns);
   // Fixes in the hole came before its end was known; those after it wait their turn.
-  const int64_t step_ns = hole->after.t_end_ns - hole->after.t_begin_ns;
+  const int64_t step_ns = hole->step_ns();
   std::vector<ImuIncrement> made_up;
   for (int64_t begin_ns = time_ns_; begin_ns < hole->after.t_begin_ns;) {
     const int64_t end_ns = std::min(begin_ns + step_ns, hole->after.t_begin_ns);
@@ -419,6 +421,11 @@ void NavigationRun::RecentRates::add(const ImuIncrement& increment) {
   const double weight = std::min(1.0, dt / memory);
   gyro_b += weight * (increment.dtheta_b / dt - gyro_b);
   accel_b += weight * (increment.dvel_b / dt - accel_b);
+}
+
+void NavigationRun::UsualInterval::add(double dt) {
+  memory = std::min(memory + dt, kRecentRatesMemory);
+  length += std::min(1.0, dt / memory) * (dt - length);
 }
 
 /// Propagates over the increment, which begins now, with a stop wherever something is due. False if

@@ -319,6 +319,24 @@ TEST_F(NavigationRunTest, ShortHolesAreBridgedAtOnce) {
   EXPECT_EQ(log_.propagated.back().t_end_ns, at(310));
 }
 
+TEST_F(NavigationRunTest, TheBridgeDoesNotStepByTheIncrementAfterTheHole) {
+  align();
+  feed_imu(10, 100);
+  log_.propagated.clear();
+  run().process(increment_between(300, 300.0001));  // of 100 ns
+  feed_imu(310, 320);
+  EXPECT_LE(log_.propagated.size(), 25u);
+  EXPECT_EQ(log_.propagated.back().t_end_ns, at(320));
+}
+
+TEST_F(NavigationRunTest, AHoleRightAfterTheStartIsBridgedInFewSteps) {
+  align();
+  log_.propagated.clear();
+  run().process(increment_between(300, 300.0001));
+  EXPECT_LE(log_.propagated.size(), 2002u);
+  EXPECT_EQ(log_.propagated.back().t_end_ns, at(300.0001));
+}
+
 TEST_F(NavigationRunTest, TheCourseAfterAHoleTellsTheTurnInIt) {
   velocity_n_ = Vector3d(10, 0, 0);
   options_.gnss.gate_false_alarm = 0;  // the fake navigator does not move along

@@ -106,6 +106,14 @@ class NavigationRun : public Estimator {
     void add(const ImuIncrement& increment);
   };
 
+  /// Length of increments, weighed by their share of the time, so that slips of stamps do not
+  /// count.
+  struct UsualInterval {
+    double length = 0;  ///< [s]
+    double memory = 0;  ///< seconds that it rests on
+    void add(double dt);
+  };
+
   /// What a fix is before anything is known of the state: the first of these that holds.
   enum class FixClass { elsewhen, repeated, bad_position, bad_sigma, low_quality, usable };
 
@@ -198,6 +206,7 @@ class NavigationRun : public Estimator {
   int64_t last_used_ns_ = 0;                     ///< fix, or start
   std::optional<GnssFix> last_fix_seen_;
   std::optional<Epoch> before_hole_;  ///< the last state, while aligning anew
+  UsualInterval usual_interval_;
   RecentRates recent_;
   std::deque<Measurement> held_;
   std::multimap<int64_t, Event> pending_;  ///< by stamp
