@@ -42,7 +42,12 @@ std::vector<std::string> health_notes(const RawlogInfo& info) {
   }
   for (const StreamInfo& s : info.streams) {
     if (s.backward > 0) notes.push_back(fmt::format("{}: {} stamps go back", s.label, s.backward));
-    if (s.duplicates > 0) {
+    if (s.burst_samples > 0) {
+      notes.push_back(
+          fmt::format("{}: stamps are of arrival, in bursts of {:.1f}; they are made even, "
+                      "{:.3g} ms apart",
+                      s.label, s.burst_samples, 1e3 * s.median_interval));
+    } else if (s.duplicates > 0) {
       notes.push_back(fmt::format("{}: {} stamps repeat the one before", s.label, s.duplicates));
     }
     if (s.without_stamp > 0) {

@@ -220,7 +220,10 @@ class ImuReader : public RecordReader {
     sample.accel_b = vector(row, accel_) * accel_scale_;
     if (wheel_speed_) row.number(*wheel_speed_);
     sample.t_ns = time_.stamp(row);
-    order_.check(row, sample.t_ns);
+    // Of one stamp but another sample: a burst, see BurstStamps.
+    order_.check(row, sample.t_ns,
+                 sample.gyro_b != last_.gyro_b || sample.accel_b != last_.accel_b);
+    last_ = sample;
     return sample;
   }
 
@@ -233,6 +236,7 @@ class ImuReader : public RecordReader {
   double accel_scale_;
   std::optional<size_t> wheel_speed_;
   StampOrder order_;
+  ImuSample last_;
   std::optional<ImuSample> pending_;
 };
 

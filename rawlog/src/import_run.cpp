@@ -145,8 +145,9 @@ void check_not_an_input(const std::string& out, const ImportInputs& inputs) {
 
 }  // namespace
 
-void StampOrder::check(const Row& row, int64_t t_ns) {
-  if (last_ns_ && t_ns <= *last_ns_) {
+void StampOrder::check(const Row& row, int64_t t_ns, bool may_equal) {
+  const bool equal = last_ns_ && t_ns == *last_ns_;
+  if (last_ns_ && t_ns <= *last_ns_ && !(equal && may_equal)) {
     row.fail(
         fmt::format("the stamp {} does not come after the one before it, {}; sort the file "
                     "by time and remove repeated rows",

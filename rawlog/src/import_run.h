@@ -21,10 +21,10 @@ class RecordReader {
   virtual int64_t without_fix() const { return 0; }
 };
 
-/// Stamps of a stream: each after the one before.
+/// Stamps of a stream: each after the one before, or at the same time if `may_equal`.
 class StampOrder {
  public:
-  void check(const Row& row, int64_t t_ns);
+  void check(const Row& row, int64_t t_ns, bool may_equal = false);
 
  private:
   std::optional<int64_t> last_ns_;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "foucault/inertial/burst_stamps.h"
 #include "mrpt_convert.h"
 #include "rawlog_stream.h"
 
@@ -97,18 +98,30 @@ class StreamStatistics {
       info_.last_ns = *t_ns;
     }
     last_ns_ = t_ns;
+    look_for_bursts(*t_ns);
   }
 
   StreamInfo result() const {
     constexpr double kGapIntervals = 1.5;
     StreamInfo info = info_;
-    info.median_interval = intervals_.median();
-    info.gap_count = intervals_.longer_than(kGapIntervals * info.median_interval);
-    info.longest_gaps = longest_.in_time_order(kGapIntervals * info.median_interval);
+    info.median_interval = bursts_ ? bursts_->interval_s : intervals_.median();
+    info.burst_samples = bursts_ ? bursts_->samples : 0;
+    const double usual = bursts_ ? bursts_->samples * bursts_->interval_s : info.median_interval;
+    info.gap_count = intervals_.longer_than(kGapIntervals * usual);
+    info.longest_gaps = longest_.in_time_order(kGapIntervals * usual);
     return info;
   }
 
  private:
+  void look_for_bursts(int64_t t_ns) {
+    constexpr size_t kLookedAt = 400;
+    if (info_.type != "CObservationIMU") return;
+    recent_.push_back(t_ns);
+    if (recent_.size() < kLookedAt) return;
+    if (const std::optional<BurstPattern> pattern = burst_pattern(recent_)) bursts_ = pattern;
+    recent_.clear();
+  }
+
   void add_interval(int64_t before_ns, int64_t now_ns) {
     if (now_ns == before_ns) {
       ++info_.duplicates;
@@ -124,6 +137,8 @@ class StreamStatistics {
   StreamInfo info_;
   Intervals intervals_;
   LongestIntervals longest_;
+  std::vector<int64_t> recent_;
+  std::optional<BurstPattern> bursts_;
   std::optional<int64_t> last_ns_;
 };
 

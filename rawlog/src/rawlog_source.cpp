@@ -11,7 +11,9 @@
 #include <utility>
 
 #include "foucault/core/error.h"
+#include "foucault/core/position.h"
 #include "foucault/core/time.h"
+#include "foucault/inertial/burst_stamps.h"
 #include "foucault/inertial/increments.h"
 #include "foucault/inertial/time_mismatch.h"
 #include "mrpt_convert.h"
@@ -201,6 +203,7 @@ class RawlogSource::Impl {
   void take_sample(const ImuSample& sample, int64_t record);
   void put_in_order(const ImuSample& sample, int64_t record);
   void convert_until(int64_t t_ns);
+  void convert(const ImuSample& sample, int64_t stamp_ns);
   void take_gps(const mrpt::obs::CObservationGPS& gps, int64_t t_ns);
   void take_reference(const ReferencePose& pose, const mrpt::poses::CPose3D& sensor_pose,
                       std::string_view type);
@@ -225,9 +228,11 @@ class RawlogSource::Impl {
   Incrementer incrementer_;
   SourceCounts counts_;
 
-  std::optional<ImuSample> ahead_;        ///< far after the one before it; the next one tells
-  std::deque<ImuSample> samples_;         ///< by stamp; others may still come between them
-  std::optional<ImuSample> last_sample_;  ///< of those that are increments now
+  std::optional<ImuSample> ahead_;  ///< far after the one before it; the next one tells
+  std::deque<ImuSample> samples_;   ///< by stamp; others may still come between them
+  BurstStamps even_stamps_;
+  std::optional<ImuSample> last_sample_;  ///< of those that are increments now, as recorded
+  std::optional<int64_t> last_stamp_ns_;  ///< its stamp made even
   int backward_in_a_row_ = 0;
   std::deque<ImuIncrement> increments_;
   std::multimap<int64_t, Measurement> others_;
@@ -334,8 +339,8 @@ void RawlogSource::Impl::put_in_order(const ImuSample& sample, int64_t record) {
   backward_in_a_row_ = 0;
   auto place = samples_.end();
   while (place != samples_.begin() && std::prev(place)->t_ns > sample.t_ns) --place;
-  if (place != samples_.begin() && std::prev(place)->t_ns == sample.t_ns) {
-    if (!same(sample, *std::prev(place))) return skip_noted(kImu, "stamp comes twice", sample.t_ns);
+  for (auto it = place; it != samples_.begin() && std::prev(it)->t_ns == sample.t_ns; --it) {
+    if (!same(sample, *std::prev(it))) continue;
     ++counts_.imu_duplicates;
     return;
   }
@@ -348,12 +353,27 @@ void RawlogSource::Impl::put_in_order(const ImuSample& sample, int64_t record) {
 }
 
 void RawlogSource::Impl::convert_until(int64_t t_ns) {
-  while (!samples_.empty() && samples_.front().t_ns <= t_ns) {
-    last_sample_ = samples_.front();
-    samples_.pop_front();
-    if (const std::optional<ImuIncrement> increment = incrementer_.add(*last_sample_)) {
-      increments_.push_back(*increment);
+  while (true) {
+    const std::vector<int64_t>& stamps = even_stamps_.take(samples_, t_ns);
+    if (stamps.empty()) return;
+    for (const int64_t stamp_ns : stamps) {
+      convert(samples_.front(), stamp_ns);
+      samples_.pop_front();
     }
+  }
+}
+
+void RawlogSource::Impl::convert(const ImuSample& sample, int64_t stamp_ns) {
+  last_sample_ = sample;
+  if (last_stamp_ns_ && stamp_ns <= *last_stamp_ns_) {
+    --counts_.imu_samples;
+    return skip_noted(kImu, "stamp comes twice", stamp_ns);
+  }
+  last_stamp_ns_ = stamp_ns;
+  ImuSample even = sample;
+  even.t_ns = stamp_ns;
+  if (const std::optional<ImuIncrement> increment = incrementer_.add(even)) {
+    increments_.push_back(*increment);
   }
 }
 
@@ -484,6 +504,9 @@ std::vector<Notice> RawlogSource::Impl::notices() const {
         {begin_ns, NoticeKind::skipped,
          fmt::format("{} IMU samples came after later ones and were put in order by stamp",
                      counts_.imu_reordered)});
+  }
+  if (const std::optional<std::string> bursts = even_stamps_.summary()) {
+    notices.push_back({even_stamps_.first_ns(), NoticeKind::skipped, *bursts});
   }
   for (const auto& [name, count] : counts_.skipped) {
     const auto first = first_skipped_ns_.find(name);

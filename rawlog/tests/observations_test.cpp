@@ -368,5 +368,53 @@ TEST_F(Observations, RepeatedImuSamplesAreDroppedAndCounted) {
   EXPECT_EQ(source.counts().imu_duplicates, 1);
 }
 
+TEST_F(Observations, SamplesOfOneStampAreSpreadInOrder) {
+  const std::string path = scratch_.path("pairs.rawlog");
+  constexpr int kSamples = 800;
+  {
+    test::GzLog log(path);
+    for (int i = 0; i < kSamples; ++i) {
+      auto imu = imu_at(kBegin + (i / 2 * 2 + 1) * 10 * kMs);
+      imu.set(mrpt::obs::IMU_WX, 0.001 * i);
+      log.write(imu);
+      if (i % 100 == 0) log.write(gps_at(kBegin + i * 10 * kMs));
+    }
+  }
+  RawlogSource source(path);
+  const std::vector<ImuIncrement> increments = all<ImuIncrement>(source);
+  ASSERT_EQ(increments.size(), kSamples - 1U);
+  for (int i = 1; i < kSamples; ++i) {
+    const ImuIncrement& increment = increments[static_cast<size_t>(i) - 1];
+    EXPECT_EQ(increment.t_end_ns, kBegin + i * 10 * kMs);
+    EXPECT_NEAR(increment.dt(), 0.01, 1e-9);
+    EXPECT_NEAR(increment.dtheta_b.x(), 0.001 * i * 0.01, 1e-12);
+  }
+  EXPECT_EQ(source.counts().imu_samples, kSamples);
+  const std::vector<Notice> notices = source.notices();
+  ASSERT_EQ(notices.size(), 1U);
+  EXPECT_THAT(notices[0].text, ::testing::HasSubstr("800 IMU samples are stamped on arrival, in "
+                                                    "400 bursts of 2.0"));
+}
+
+/// Here and there a second sample of one stamp is no burst.
+TEST_F(Observations, ASecondSampleOfOneStampIsLeftOutWhereTheyAreRare) {
+  const std::string path = scratch_.path("twice.rawlog");
+  {
+    test::GzLog log(path);
+    for (int i = 0; i < 400; ++i) {
+      auto imu = imu_at(kBegin + i * 10 * kMs);
+      log.write(imu);
+      imu.set(mrpt::obs::IMU_WX, 7);
+      if (i % 100 == 50) log.write(imu);
+      if (i % 100 == 0) log.write(gps_at(kBegin + i * 10 * kMs));
+    }
+  }
+  RawlogSource source(path);
+  EXPECT_EQ(all<ImuIncrement>(source).size(), 399U);
+  EXPECT_EQ(source.counts().imu_samples, 400);
+  ASSERT_EQ(source.notices().size(), 1U);
+  EXPECT_THAT(source.notices()[0].text, ::testing::HasSubstr("4 x CObservationIMU (stamp comes"));
+}
+
 }  // namespace
 }  // namespace foucault

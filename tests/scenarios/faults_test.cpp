@@ -88,6 +88,15 @@ TEST_F(Faults, OthersLeaveCentimetres) {
   }
 }
 
+TEST_F(Faults, BurstsAreMadeEvenAndNamed) {
+  for (const FaultOutcome& outcome : run("imu_bursts")) {
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.message;
+    EXPECT_LT(outcome.rms_m, 0.02) << outcome.method;
+    EXPECT_LT(outcome.largest_m, 0.3) << outcome.method;
+    EXPECT_THAT(outcome.message, HasSubstr("stamped on arrival"));
+  }
+}
+
 /// As good as 60 s without GNSS, with this IMU.
 TEST_F(Faults, FixesThatCannotBeUsedAreAnOutage) {
   for (const char* fault : {"sigma_zero", "sigma_negative", "sigma_nan"}) {

@@ -42,10 +42,12 @@ class Injection {
           add_increment(*increment, item.due_ns);
           continue;
         }
+        hand_over_burst();
         last_ = *increment;
       }
       out_.push_back(item);
     }
+    hand_over_burst();
     return std::move(out_);
   }
 
@@ -142,6 +144,10 @@ class Injection {
       case FaultKind::imu_jitter:
         out = jittered(increment);
         break;
+      case FaultKind::imu_bursts:
+        burst_.push_back(increment);
+        if (static_cast<double>(burst_.size()) >= fault_.size) hand_over_burst();
+        return;
       case FaultKind::imu_nan:
         if (tenth) out.dvel_b.x() = kNaN;
         break;
@@ -188,13 +194,31 @@ class Injection {
     give(out, due_ns);
   }
 
-  /// Rates as they were, between stamps that are off; never so far that they meet.
+  /// A burst comes when its last sample has been taken.
+  void hand_over_burst() {
+    constexpr int64_t kApartNs = 200'000;
+    if (burst_.empty()) return;
+    int64_t end_ns = burst_.back().t_end_ns;
+    for (const ImuIncrement& increment : burst_) {
+      give(restamped(increment, end_ns));
+      end_ns += kApartNs;
+    }
+    burst_.clear();
+  }
+
+  /// Never so far that stamps meet.
   ImuIncrement jittered(const ImuIncrement& increment) {
     const double most = 0.4 * increment.dt();
+    const double off = std::clamp(fault_.size * draws_.normal(), -most, most);
+    return restamped(increment, increment.t_end_ns + nanoseconds(off));
+  }
+
+  /// Rates as they were, from the last stamp that is off to the next.
+  ImuIncrement restamped(const ImuIncrement& increment, int64_t end_ns) {
     ImuIncrement out = increment;
-    out.t_begin_ns = jittered_end_ns_.value_or(increment.t_begin_ns);
-    out.t_end_ns += nanoseconds(std::clamp(fault_.size * draws_.normal(), -most, most));
-    jittered_end_ns_ = out.t_end_ns;
+    out.t_begin_ns = restamped_end_ns_.value_or(increment.t_begin_ns);
+    out.t_end_ns = end_ns;
+    restamped_end_ns_ = out.t_end_ns;
     const double stretched = out.dt() / increment.dt();
     out.dtheta_b *= stretched;
     out.dvel_b *= stretched;
@@ -208,7 +232,8 @@ class Injection {
   int64_t fixes_ = 0, increments_ = 0;
   std::vector<GnssFix> waiting_;
   std::optional<ImuIncrement> last_;
-  std::optional<int64_t> jittered_end_ns_;
+  std::optional<int64_t> restamped_end_ns_;
+  std::vector<ImuIncrement> burst_;
 };
 
 /// Rates on straight lines over the fault, from the last increment before it to the first after.

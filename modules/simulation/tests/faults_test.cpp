@@ -93,6 +93,20 @@ TEST(Faults, JitterKeepsRatesAndLeavesNoHoles) {
   }
 }
 
+TEST(Faults, BurstsKeepRatesOrderAndCount) {
+  const Recording clean = record({});
+  const Recording faulty = record({{FaultKind::imu_bursts, 0, 1e9, 4}});
+  ASSERT_EQ(faulty.increments.size(), clean.increments.size());
+  for (std::size_t i = 1; i + 4 < faulty.increments.size(); ++i) {
+    const ImuIncrement& a = faulty.increments[i];
+    EXPECT_EQ(a.t_begin_ns, faulty.increments[i - 1].t_end_ns);
+    EXPECT_EQ(a.t_end_ns,
+              clean.increments[i / 4 * 4 + 3].t_end_ns + static_cast<int64_t>(i % 4) * 200'000);
+    EXPECT_NEAR(a.dvel_b.z() / a.dt(), clean.increments[i].dvel_b.z() / clean.increments[i].dt(),
+                1e-6);
+  }
+}
+
 TEST(Faults, OrderOfFixes) {
   const Recording swapped = record({{FaultKind::fix_swapped, 10, 20}});
   EXPECT_GT(swapped.fixes[11].t_ns, swapped.fixes[12].t_ns);

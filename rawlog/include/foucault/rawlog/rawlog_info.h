@@ -26,9 +26,11 @@ struct StreamInfo {
   int64_t count = 0;
   int64_t first_ns = 0;
   int64_t last_ns = 0;
-  double median_interval = 0;  ///< [s], 0 with fewer than two; to 0.1 %
-  int64_t duplicates = 0;      ///< stamps equal to the one before
-  int64_t backward = 0;        ///< stamps before the one before
+  /// [s], 0 with fewer than two; to 0.1 %. Where samples come in bursts that of the samples.
+  double median_interval = 0;
+  double burst_samples = 0;  ///< of the IMU: mean a burst, see BurstPattern; 0: none
+  int64_t duplicates = 0;    ///< stamps equal to the one before
+  int64_t backward = 0;      ///< stamps before the one before
   int64_t without_stamp = 0;
   int64_t gap_count = 0;
   std::vector<Gap> longest_gaps;  ///< at most 20, in order of time

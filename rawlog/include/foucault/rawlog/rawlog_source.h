@@ -52,6 +52,8 @@ struct SourceCounts {
 ///
 /// Order: by stamp, as core/measurement.h says. IMU samples and fixes may come up to reorder_s
 /// late. An IMU stamp more than a second ahead of the one before it counts if the next confirms it.
+/// Stamps of samples that a host stamped on arrival in bursts are made even (BurstStamps), which
+/// needs reorder_s to look ahead.
 /// Memory: constant; it grows only with what lies within reorder_s, or ahead of the IMU.
 ///
 /// Values that are not finite are skipped and counted, and so are IMU samples that come later than

@@ -32,6 +32,7 @@ enum class FaultKind {
   imu_duplicate,     ///< every tenth comes twice
   imu_backward,      ///< every tenth after its successor
   imu_jitter,        ///< stamps off by noise of sigma `size` [s]
+  imu_bursts,        ///< stamped on arrival, `size` at a time, 0.2 ms apart
   imu_nan,           ///< every tenth is not a number
   imu_clipped,       ///< angular rates beyond `size` [rad/s] are cut off
   imu_stuck,         ///< the third gyroscope repeats its last value
