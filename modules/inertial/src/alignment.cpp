@@ -61,6 +61,14 @@ CourseLimits course_limits(const AlignmentOptions& options) {
           options.max_turn_rate_deg_s * kDegree, options.mounting_sigma_deg * kDegree};
 }
 
+std::string wrong_axes(const std::string& up) {
+  return fmt::format(
+      "gravity points the wrong way: the IMU's axes say that up is the vehicle's {} axis; correct "
+      "the axes of the import, or give alignment.roll_deg and pitch_deg if the vehicle does stand "
+      "so",
+      up);
+}
+
 std::string describe(const Epoch& epoch, const Quaterniond& q_v_b) {
   const VehicleAttitude attitude = vehicle_attitude(epoch, Mounting{q_v_b});
   const Vector3d sigma = attitude.sigma / kDegree;
@@ -123,8 +131,9 @@ class Aligner::Impl {
   void note_hole(const ImuIncrement& increment);
   void finish_rest_with_given_heading();
   void start_at_rest(const HeadingOffset& heading, double drift_variance);
+  void accept_moving(const Epoch& epoch);
   void accept(const Epoch& epoch, const std::string& how);
-  void require_upright(const Epoch& epoch) const;
+  std::optional<std::string> wrong_up(const Epoch& epoch) const;
 
   AlignmentOptions options_;
   ImuNoise noise_;
@@ -136,6 +145,12 @@ class Aligner::Impl {
   CarriedAttitude carried_;
   CourseFinder courses_;
   MovingAlignment moving_;
+  /// Attitudes in a row, found while moving, of which this axis is up.
+  struct Tilted {
+    std::string up;
+    int64_t since_ns = 0;
+  };
+  std::optional<Tilted> tilted_;
   std::optional<GnssFix> first_given_;  ///< mode given: the fix to start from
   Vector3d rate_sum_ = Vector3d::Zero();
   double rate_time_ = 0;
@@ -162,7 +177,7 @@ void Aligner::Impl::add(const GnssFix& fix) {
     const std::optional<HeadingOffset> heading = courses_.add(fix, carried_.attitude());
     if (heading) start_at_rest(*heading, carried_.drift_variance());
   } else if (const std::optional<AlignmentFindings> findings = moving_.add(fix)) {
-    accept(with_given_angles(initial_state(*findings, noise_), q_v_b_, given_), "while moving");
+    accept_moving(with_given_angles(initial_state(*findings, noise_), q_v_b_, given_));
   }
 }
 
@@ -273,29 +288,37 @@ void Aligner::Impl::start_at_rest(const HeadingOffset& heading, double drift_var
   accept(epoch, fmt::format("from {:.0f} s of rest, {}", T, source));
 }
 
+/// On its side in a roll or a loop a vehicle is no place to start from, and no proof of wrong axes:
+/// those are as wrong in every stretch.
+void Aligner::Impl::accept_moving(const Epoch& epoch) {
+  constexpr double kLongestManoeuvre = 30;  // [s]
+  const std::optional<std::string> up = wrong_up(epoch);
+  if (!up) return accept(epoch, "while moving");
+  if (!tilted_ || tilted_->up != *up) tilted_ = Tilted{*up, epoch.t_ns};
+  if (seconds_between(tilted_->since_ns, epoch.t_ns) > kLongestManoeuvre) {
+    throw DataError(wrong_axes(*up));
+  }
+}
+
 void Aligner::Impl::accept(const Epoch& epoch, const std::string& how) {
-  require_upright(epoch);
+  if (const std::optional<std::string> up = wrong_up(epoch)) throw DataError(wrong_axes(*up));
   initial_ = epoch;
   summary_ = fmt::format("aligned {}: {}", how, describe(epoch, q_v_b_));
 }
 
 /// A course is a heading only while the forward axis is about level; axes named wrongly are seen in
-/// that.
-void Aligner::Impl::require_upright(const Epoch& epoch) const {
+/// that: which axis of the vehicle is up instead.
+std::optional<std::string> Aligner::Impl::wrong_up(const Epoch& epoch) const {
   constexpr double kSteepest = 60 * kDegree;
-  if (all_given() || given_.roll || given_.pitch) return;
+  if (all_given() || given_.roll || given_.pitch) return std::nullopt;
   const Vector3d up_v = (epoch.q_n_b * q_v_b_.conjugate()).conjugate() * -Vector3d::UnitZ();
-  if (-up_v.z() > std::cos(kSteepest)) return;
+  if (-up_v.z() > std::cos(kSteepest)) return std::nullopt;
   Eigen::Index axis = 0;
   up_v.cwiseAbs().maxCoeff(&axis);
   const bool plus = up_v[axis] > 0;
   const char* const names[] = {plus ? "forward" : "backward", plus ? "right" : "left",
                                plus ? "down" : "up"};
-  throw DataError(
-      fmt::format("gravity points the wrong way: the IMU's axes say that up is the vehicle's {} "
-                  "axis; correct the axes of the import, or give alignment.roll_deg and pitch_deg "
-                  "if the vehicle does stand so",
-                  names[axis]));
+  return std::string(names[axis]);
 }
 
 int64_t Aligner::Impl::earliest_start_ns() const {
@@ -321,6 +344,7 @@ std::string Aligner::Impl::why_not() const {
                       to_seconds(*first_increment_ns_), to_seconds(*last_increment_ns_));
   }
   if (all_given()) return head + "there are fewer than two fixes within the IMU data";
+  if (tilted_) return head + wrong_axes(tilted_->up);
   const double fastest = std::max(courses_.fastest(), moving_.fastest());
   std::string why =
       rest_.established()

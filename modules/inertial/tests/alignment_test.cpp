@@ -423,6 +423,51 @@ TEST(Alignment, OptionsRoundTrip) {
   EXPECT_THROW(set_config("mode=manual", options), UsageError);
 }
 
+/// On its right side until `until_s`, as in a slow roll, straight ahead at 20 m/s.
+std::vector<Measurement> on_its_side(double until_s, double duration_s) {
+  Drive drive;
+  drive.speed = [](double) { return 20.0; };
+  drive.duration = duration_s;
+  const DriveSimulator simulator(drive, Sensors());
+  const Quaterniond q_rolled_level(Eigen::AngleAxisd(-90 * kDeg, Vector3d::UnitX()));
+  std::vector<Measurement> stream = simulator.stream();
+  for (Measurement& m : stream) {
+    auto* increment = std::get_if<ImuIncrement>(&m);
+    if (!increment || seconds_between(DriveSimulator::kStart, increment->t_end_ns) > until_s) {
+      continue;
+    }
+    increment->dtheta_b = q_rolled_level * increment->dtheta_b;
+    increment->dvel_b = q_rolled_level * increment->dvel_b;
+  }
+  return stream;
+}
+
+TEST(AlignmentWhileMoving, ARollIsNoProofOfWrongAxes) {
+  const Sensors sensors;
+  Aligner aligner(AlignmentOptions(), noise_of(sensors, 1e-4, 1e-2), Mounting{});
+  for (const Measurement& m : on_its_side(12, 40)) {
+    if (const auto* fix = std::get_if<GnssFix>(&m)) aligner.add(*fix);
+    if (const auto* increment = std::get_if<ImuIncrement>(&m)) aligner.add(*increment);
+  }
+  ASSERT_TRUE(aligner.initial().has_value()) << aligner.why_not();
+  EXPECT_NEAR(so3::to_euler(aligner.initial()->q_n_b).roll, 0, 2 * kDeg);
+}
+
+TEST(AlignmentWhileMoving, AxesThatStayWrongAreRefused) {
+  const Sensors sensors;
+  const auto feed = [&](double duration_s) {
+    Aligner aligner(AlignmentOptions(), noise_of(sensors, 1e-4, 1e-2), Mounting{});
+    for (const Measurement& m : on_its_side(1e9, duration_s)) {
+      if (const auto* fix = std::get_if<GnssFix>(&m)) aligner.add(*fix);
+      if (const auto* increment = std::get_if<ImuIncrement>(&m)) aligner.add(*increment);
+    }
+    EXPECT_FALSE(aligner.initial().has_value());
+    return aligner.why_not();
+  };
+  EXPECT_NE(feed(20).find("gravity points the wrong way"), std::string::npos);
+  EXPECT_THROW(feed(60), DataError);
+}
+
 TEST(Alignment, SaysWhyThereIsNone) {
   Sensors sensors = industrial_sensors();
   Drive standing;

@@ -48,6 +48,8 @@ class Aligner {
   Aligner(Aligner&&) noexcept;
   Aligner& operator=(Aligner&&) noexcept;
 
+  /// Throw DataError if the axes must be wrong: up is none of the vehicle's up, at rest or, where a
+  /// manoeuvre may be the reason, for half a minute of driving.
   /// In the order of Measurement. Fixes must have a finite position and a positive definite
   /// covariance; increments must not overlap.
   void add(const GnssFix& fix);
