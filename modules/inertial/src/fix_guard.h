@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,17 +10,46 @@
 
 namespace foucault {
 
+/// Tells where one position is given again and again under new stamps, as tables at the rate of the
+/// IMU do, or drivers that publish faster than the receiver measures: of the last ten positions,
+/// eight came twice or more, and did so while the vehicle moved on, or three times or more and
+/// equally often. A receiver in motion never gives the same latitude and longitude twice, and one
+/// at rest gives them once, twice, five times, as noise will have it.
+class HeldPositions {
+ public:
+  /// Whether this fix repeats the one before it in such a recording.
+  bool repeats(const GnssFix& fix);
+
+ private:
+  /// Fixes of one position.
+  struct Run {
+    int fixes = 0;
+    bool moving = false;
+  };
+  void end_run(const GnssFix& next);
+  bool is_held() const;
+
+  std::optional<GnssFix> first_;  ///< of the present run
+  int64_t last_ns_ = 0;
+  int fixes_ = 0;
+  std::deque<Run> runs_;
+};
+
 /// Looks at fixes before they are used, as ImuGuard does at increments. Left out, counted and named
 /// are those that cannot be a position of this recording:
 /// - no position at all, see is_position();
+/// - held: the position of the fix before, in a recording that repeats positions;
 /// - out of reach: further from the last good one than kFarAway and what the fastest vehicle drives
 ///   in between. Where one place contradicts another the one that more fixes in a row give is
 ///   believed, at the latest after kLongestDoubt; so a wrong first fix costs one good one.
 /// A velocity that is no number, or has no sigma, is taken off a good position.
 class FixGuard {
  public:
-  /// What may be used; none if the fix is left out.
-  std::optional<GnssFix> look_at(const GnssFix& fix);
+  struct Verdict {
+    std::optional<GnssFix> fix;  ///< what may be used; none if the fix is left out
+    bool held = false;           ///< for this reason
+  };
+  Verdict look_at(const GnssFix& fix);
 
   /// One line a kind: how many were left out, and the first.
   std::vector<std::string> summary() const;
@@ -41,7 +71,8 @@ class FixGuard {
   static void go_on(std::optional<Place>& place, const GnssFix& fix);
 
   std::optional<Place> believed_, doubted_;
-  Tally no_position_, out_of_reach_, bad_velocity_;
+  HeldPositions held_positions_;
+  Tally no_position_, out_of_reach_, held_, bad_velocity_;
 };
 
 }  // namespace foucault

@@ -12,6 +12,7 @@
 #include "fix_judge.h"
 #include "fix_screen.h"
 #include "foucault/core/error.h"
+#include "foucault/core/position.h"
 #include "foucault/core/profile.h"
 #include "foucault/core/time.h"
 #include "foucault/geodesy/local_frame.h"
@@ -156,6 +157,7 @@ void NavigationRun::process_fix(const GnssFix& fix) {
       }
       return;
     case FixClass::repeated:
+    case FixClass::held:
       return leave_out(fix, FixVerdict::out_of_order);
     case FixClass::bad_position:
       return leave_out(fix, FixVerdict::bad_sigma);
@@ -175,9 +177,10 @@ NavigationRun::FixClass NavigationRun::classify(GnssFix& fix) {
   if (imu_ns && std::abs(fix.t_ns - *imu_ns) > kElsewhenNs) return FixClass::elsewhen;
   if (is_repeated(fix)) return FixClass::repeated;
   last_fix_seen_ = fix;
-  const std::optional<GnssFix> usable = fix_guard_->look_at(fix);
-  if (!usable) return FixClass::bad_position;
-  fix = *usable;
+  const FixGuard::Verdict verdict = fix_guard_->look_at(fix);
+  if (verdict.held) return FixClass::held;
+  if (!verdict.fix) return FixClass::bad_position;
+  fix = *verdict.fix;
   if (!covariance_is_valid(weighted(fix, options_.gnss).position_covariance)) {
     return FixClass::bad_sigma;
   }
@@ -731,6 +734,7 @@ std::string NavigationRun::unusable_fixes() const {
       {FixClass::bad_position, "with no position (zero, not finite, out of range or reach)"},
       {FixClass::low_quality, "below gnss.min_quality=" + options_.gnss.min_quality},
       {FixClass::repeated, "that repeat the one before them"},
+      {FixClass::held, "that repeat the position before them under a new stamp"},
       {FixClass::elsewhen, "stamped far from the IMU"}};
   std::string list;
   for (const auto& [fix_class, what] : kinds) {

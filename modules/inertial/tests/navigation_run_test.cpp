@@ -560,6 +560,36 @@ TEST_F(NavigationRunTest, AWrongFirstFixCostsOneGoodOne) {
   EXPECT_THAT(sink_.notices.back().text, HasSubstr("1 fixes lie where no vehicle gets to"));
 }
 
+TEST_F(NavigationRunTest, APositionHeldUnderNewStampsCountsOnce) {
+  options_.gnss.gate_false_alarm = 0;
+  align();
+  for (int i = 0; i < 150; ++i) {  // at 20 Hz, of a receiver of 4 Hz, at 10 m/s
+    feed_imu(10 + 50 * i, 60 + 50 * i);
+    run().process(fix_at(65 + 50 * i, Vector3d(2.5 * (i / 5), 0, 0)));
+  }
+  feed_imu(7510, 7600);
+  run().finish();
+  // The first ten tell; of the twenty after them one each.
+  EXPECT_EQ(log_.updates.size(), 70u);
+  EXPECT_EQ(ms_of(log_.updates.back().t_ns), 65 + 50 * 145);
+  EXPECT_THAT(sink_.notices.back().text, HasSubstr("80 fixes repeat the position before them"));
+}
+
+TEST_F(NavigationRunTest, FixesAtRestMayRepeatByChance) {
+  options_.gnss.gate_false_alarm = 0;
+  align();
+  const int runs[] = {1, 2, 1, 1, 4, 1, 2, 3, 1, 1, 2, 1, 5, 1, 1, 3, 2, 1, 1, 2};
+  int fixes = 0;
+  for (int i = 0; i < 20; ++i) {
+    for (int k = 0; k < runs[i]; ++k, ++fixes) {
+      feed_imu(10 + 50 * fixes, 60 + 50 * fixes);
+      run().process(fix_at(65 + 50 * fixes, Vector3d(0.01 * (i % 3), 0, 0)));
+    }
+  }
+  feed_imu(10 + 50 * fixes, 100 + 50 * fixes);
+  EXPECT_EQ(static_cast<int>(log_.updates.size()), fixes);
+}
+
 TEST_F(NavigationRunTest, AVelocityThatIsNoNumberLeavesThePosition) {
   align();
   GnssFix fix = fix_at(20);

@@ -71,6 +71,7 @@ struct NavigationRunOptions {
 ///   bad fixes nor a wrong state locks the other out for more than 90 s. After a hole, and from a
 ///   fix better in quality than the last used, the gate is open for ten seconds.
 /// - Before the alignment, fixes that no vehicle can reach from their neighbours are left out.
+/// - Positions given again and again under new stamps count once (out_of_order).
 /// - Fixes that are no position, or that no vehicle reaches from the others, are left out, counted
 ///   and named.
 /// - Fixes that repeat the one before them, come late, or are stamped more than an hour from the
@@ -115,7 +116,7 @@ class NavigationRun : public Estimator {
   };
 
   /// What a fix is before anything is known of the state: the first of these that holds.
-  enum class FixClass { elsewhen, repeated, bad_position, bad_sigma, low_quality, usable };
+  enum class FixClass { elsewhen, repeated, held, bad_position, bad_sigma, low_quality, usable };
 
   struct Counts {
     struct Class {
