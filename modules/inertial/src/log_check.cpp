@@ -11,6 +11,7 @@
 
 #include "course_finder.h"
 #include "fix_guard.h"
+#include "force_match.h"
 #include "foucault/core/time.h"
 #include "foucault/geodesy/local_frame.h"
 #include "foucault/inertial/time_mismatch.h"
@@ -394,8 +395,17 @@ void judge_force(const LogFacts& facts, Judgement& out) {
   if (const std::optional<std::string> wrong = wrong_force(f.norm())) {
     return out.error("specific force", *wrong, "name the unit in the import");
   }
-  const std::string text =
+  if (facts.force_factor) {
+    if (const std::optional<std::string> wrong = wrong_force_factor(*facts.force_factor)) {
+      return out.error("specific force", *wrong, "correct unit or scale in the import");
+    }
+  }
+  std::string text =
       fmt::format("mean {:.2f}, {:.2f}, {:.2f} m/s^2 forward, right, down", f.x(), f.y(), f.z());
+  if (facts.force_factor) {
+    text += fmt::format("; {:.3f} (sigma {:.3f}) times what gravity and motion make it",
+                        facts.force_factor->value, facts.force_factor->sigma);
+  }
   if (-f.z() > 0.5 * f.norm()) {
     out.ok("gravity", text);
   } else {
@@ -428,11 +438,15 @@ void judge_turns(const LogFacts& facts, Judgement& out) {
   if (const std::optional<std::string> wrong = gross_mismatch(match, facts.gnss.first_ns)) {
     return out.error("time offset", *wrong, "see there");
   }
-  const std::string text = fmt::format(
+  std::string text = fmt::format(
       "stamps of the IMU are {:.3f} s (sigma {:.3f}) {} those of GNSS; {} courses, correlation "
       "{:.3f}, gyroscopes turn {:.3f} times as much",
       std::abs(match.offset_s), match.offset_sigma_s, match.offset_s >= 0 ? "after" : "before",
       match.samples, match.correlation, match.slope);
+  if (match.gyro_factor) {
+    text += fmt::format(", in gentle turns {:.3f} (sigma {:.3f})", match.gyro_factor->value,
+                        match.gyro_factor->sigma);
+  }
   if (match.correlation < kAgree) {
     return out.warn("turns",
                     fmt::format("courses of GNSS and turns of the gyroscopes do not agree, "
@@ -463,6 +477,7 @@ class LogChecker::Impl {
     force_sum_b_ += increment.dvel_b;
     force_time_ += increment.dt();
     rest_.add(increment);
+    force_match_.add(increment);
     acceleration_.add(increment, q_v_b_);
     fine_.add(increment);
     coarse_.add(increment);
@@ -470,7 +485,7 @@ class LogChecker::Impl {
 
   void add(const GnssFix& given) {
     gnss_.add(given.t_ns);
-    const std::optional<GnssFix> usable = fix_guard_.look_at(given);
+    const std::optional<GnssFix> usable = fix_guard_.look_at(given).fix;
     if (!usable) return;
     const GnssFix& fix = *usable;
     if (!lever_arm_) lever_arm_ = fix.p_b_a.norm();
@@ -483,6 +498,7 @@ class LogChecker::Impl {
     smallest_ = smallest_ > 0 ? std::min(smallest_, sigma) : sigma;
     largest_ = std::max(largest_, sigma);
     rest_.add(fix);
+    force_match_.add(fix);
     acceleration_.add(fix);
     fine_.add(fix);
     coarse_.add(fix);
@@ -499,6 +515,7 @@ class LogChecker::Impl {
     facts.largest_sigma_m = largest_;
     facts.lever_arm_m = lever_arm_;
     if (force_time_ > 0) facts.mean_force_v = q_v_b_ * force_sum_b_ / force_time_;
+    facts.force_factor = force_match_.factor();
     facts.rest = rest_.facts();
     facts.turns = turns();
     facts.acceleration_match = acceleration_.correlation();
@@ -520,6 +537,7 @@ class LogChecker::Impl {
   Eigen::Quaterniond q_v_b_;
   StreamWatch imu_, gnss_;
   RestWatch rest_;
+  ForceMatch force_match_;
   AccelerationMatch acceleration_;
   ImuGuard guard_;
   FixGuard fix_guard_;

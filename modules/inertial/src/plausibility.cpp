@@ -13,6 +13,7 @@ constexpr double kForceMean = 10;  // [s]
 constexpr double kStandardGravity = 9.80665;
 constexpr int64_t kSamplesNeeded = 40;
 constexpr int64_t kSamplesBetweenLooks = 20;
+constexpr int64_t kWindowsBetweenLooks = 10;
 constexpr double kTurnNeeded = 6.3;  // [rad]
 
 }  // namespace
@@ -45,16 +46,32 @@ void Plausibility::look_at_force(const ImuIncrement& increment) {
   }
 }
 
-void Plausibility::add(const ImuIncrement& increment) {
-  look_at_force(increment);
-  matcher_.add(increment);
+void Plausibility::look_at_force_factor() {
+  if (force_match_.windows() < windows_looked_at_ + kWindowsBetweenLooks) return;
+  windows_looked_at_ = force_match_.windows();
+  const std::optional<MeasuredFactor> factor = force_match_.factor();
+  if (!factor) return;
+  if (const std::optional<std::string> wrong = wrong_force_factor(*factor)) {
+    throw DataError(fmt::format("{}; correct unit or scale in the import", *wrong));
+  }
+}
+
+void Plausibility::look_at_turns(int64_t t_ns) {
   if (matcher_.samples() < samples_looked_at_ + kSamplesBetweenLooks) return;
   samples_looked_at_ = matcher_.samples();
   const std::optional<TurnMatch> match = matcher_.best();
   if (!match || match->samples < kSamplesNeeded || match->turned < kTurnNeeded) return;
-  if (const std::optional<std::string> wrong = gross_mismatch(*match, increment.t_end_ns)) {
+  if (const std::optional<std::string> wrong = gross_mismatch(*match, t_ns)) {
     throw DataError(*wrong);
   }
+}
+
+void Plausibility::add(const ImuIncrement& increment) {
+  look_at_force(increment);
+  matcher_.add(increment);
+  force_match_.add(increment);
+  look_at_force_factor();
+  look_at_turns(increment.t_end_ns);
 }
 
 }  // namespace foucault

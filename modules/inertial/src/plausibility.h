@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 
+#include "force_match.h"
 #include "foucault/core/measurement.h"
 #include "foucault/inertial/turn_match.h"
 
@@ -12,22 +13,29 @@ namespace foucault {
 /// gravity, as the mean of any vehicle's is.
 std::optional<std::string> wrong_force(double mean);
 
-/// Looks for what makes a recording useless whatever the method: specific force in other units,
-/// angular rates in other units or turned axes, clocks that are seconds apart.
+/// Looks for what makes a recording useless whatever the method: specific force or angular rates
+/// in other units or of a wrong scale, turned axes, clocks that are seconds apart.
 class Plausibility {
  public:
   /// Throw DataError that names it and the remedy, as soon as it is certain.
   void add(const ImuIncrement& increment);
-  void add(const GnssFix& fix) { matcher_.add(fix); }
+  void add(const GnssFix& fix) {
+    matcher_.add(fix);
+    force_match_.add(fix);
+  }
 
  private:
   void look_at_force(const ImuIncrement& increment);
+  void look_at_force_factor();
+  void look_at_turns(int64_t t_ns);
 
   static constexpr double kLongestOffset = 25;  // [s]
   static constexpr double kStep = 0.25;         // [s]
 
   Eigen::Vector3d force_sum_b_ = Eigen::Vector3d::Zero();
   double force_time_ = 0;
+  ForceMatch force_match_;
+  int64_t windows_looked_at_ = 0;
   TurnMatcher matcher_{kLongestOffset, kStep};
   int64_t samples_looked_at_ = 0;
 };

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "course_finder.h"
+#include "foucault/core/position.h"
 #include "foucault/core/so3.h"
 #include "foucault/core/time.h"
 #include "foucault/geodesy/local_frame.h"
@@ -23,9 +24,17 @@ constexpr double kLongestCourse = 4;      // [s]
 constexpr double kSlowest = 3;            // [m/s]
 constexpr double kLongestChange = 6;      // [s] between courses
 constexpr double kFastestTurn = 1;        // [rad/s]; faster are outliers of the fixes
+constexpr double kGentle = 2;             // [m/s^2], speed times turn rate
 constexpr double kEnoughTurn = 1.5708;    // [rad]
 constexpr int64_t kEnoughSamples = 20;
 constexpr double kDegree = 0.0174532925199432958;
+
+/// Data sheets of the cheapest gyroscopes promise 3 % (MPU-6050); what slip, roads and the bias add
+/// is in the sigma or stays below as much again. Twenty are no gyroscope's.
+bool scale_is_wrong(const MeasuredFactor& factor) {
+  constexpr double kLargestError = 0.2, kSigmas = 5;
+  return std::abs(factor.value - 1) > kLargestError + kSigmas * factor.sigma;
+}
 
 }  // namespace
 
@@ -120,14 +129,23 @@ void TurnMatcher::compare(const Change& change) {
   if (!turned_at(t0 - edge) || !turned_at(t1 + edge)) return;
   const double y = so3::wrap(change.after.course - change.before.course);
   if (std::abs(y) > kFastestTurn * (t1 - t0)) return;
+  const double speed = std::max(change.before.speed, change.after.speed);
+  const bool gentle = speed * std::abs(y) < kGentle * (t1 - t0);
   for (std::size_t i = 0; i < sums_.size(); ++i) {
     const double offset = step_s_ * static_cast<double>(i) - longest_s_;
     const double x = *turned_at(t1 + offset) - *turned_at(t0 + offset);
     Sums& s = sums_[i];
     s.xx += x * x;
     s.xy += x * y;
+    if (!gentle) continue;
+    s.gentle_xx += x * x;
+    s.gentle_xy += x * y;
   }
   yy_ += y * y;
+  if (gentle) {
+    gentle_yy_ += y * y;
+    ++gentle_samples_;
+  }
   turned_ += std::abs(y);
   ++samples_;
 }
@@ -137,6 +155,16 @@ TurnMatcher::Fit TurnMatcher::fit(const Sums& s) const {
   if (!(s.xx > 0)) return {0, yy_};
   const double a = s.xy / s.xx;
   return {a, yy_ - a * s.xy};
+}
+
+/// The gyroscopes' turn per the course's is 1/a, with the sigma that the residuals of y = a x
+/// leave.
+std::optional<MeasuredFactor> TurnMatcher::gentle_factor(const Sums& s) const {
+  if (gentle_samples_ < kEnoughSamples || !(s.gentle_xy > 0)) return std::nullopt;
+  const double a = s.gentle_xy / s.gentle_xx;
+  const double residual = std::max(0.0, gentle_yy_ - a * s.gentle_xy);
+  const double variance = residual / static_cast<double>(gentle_samples_ - 1) / s.gentle_xx;
+  return MeasuredFactor{1 / a, std::sqrt(variance) / (a * a), gentle_samples_};
 }
 
 std::optional<TurnMatch> TurnMatcher::best() const {
@@ -154,6 +182,7 @@ std::optional<TurnMatch> TurnMatcher::best() const {
   match.slope = least->turn != 0 ? 1 / least->turn : 0;
   match.correlation = std::copysign(std::sqrt(std::max(0.0, 1 - middle / yy_)), least->turn);
   match.offset_s = step_s_ * static_cast<double>(least - fits.begin()) - longest_s_;
+  match.gyro_factor = gentle_factor(sums_[static_cast<std::size_t>(least - fits.begin())]);
   match.residual_share = middle / fits[fits.size() / 2].residual;
   if (curvature > 0) {
     match.offset_s += step_s_ * std::clamp(0.5 * (left - right) / curvature, -0.5, 0.5);
@@ -180,6 +209,12 @@ std::optional<std::string> gross_mismatch(const TurnMatch& match, int64_t t_ns) 
     return std::string(
         "angular rates are pi/180 of those of the course, converted to radians "
         "twice; correct the unit in the import");
+  }
+  if (match.gyro_factor && scale_is_wrong(*match.gyro_factor)) {
+    return fmt::format(
+        "the gyroscopes turn {:.3f} (sigma {:.3f}) times as much as the course of GNSS, and no "
+        "gyroscope's scale factor is so far off; correct unit or scale in the import",
+        match.gyro_factor->value, match.gyro_factor->sigma);
   }
   constexpr double kClearly = 0.25;
   if (std::abs(match.offset_s) < kGrossOffset || match.residual_share > kClearly) {

@@ -121,6 +121,53 @@ TEST(TurnMatch, AFixThatIsNoPositionDoesNotBlindIt) {
   EXPECT_NEAR(matcher.best()->slope, 1, 0.05);
 }
 
+/// Sensors that measure a multiple of what they should.
+class Scaled : public Source {
+ public:
+  Scaled(double gyro, double accel) : gyro_(gyro), accel_(accel) {}
+  std::optional<Measurement> next() override {
+    std::optional<Measurement> m = source_.next();
+    if (auto* increment = m ? std::get_if<ImuIncrement>(&*m) : nullptr) {
+      increment->dtheta_b *= gyro_;
+      increment->dvel_b *= accel_;
+    }
+    return m;
+  }
+  const Mounting& mounting() const override { return source_.mounting(); }
+  double progress() const override { return source_.progress(); }
+
+ private:
+  double gyro_, accel_;
+  SimulatedSource source_{city(), imu_preset("ADIS16465")};
+};
+
+std::vector<Finding> findings_of(Source& source) {
+  LogChecker checker(imu_preset("ADIS16465"), source.mounting());
+  while (const std::optional<Measurement> m = source.next()) checker.add(*m);
+  return checker.findings();
+}
+
+TEST(LogCheck, FactorsThatNoSensorHasAreErrors) {
+  for (const double factor : {0.5, 0.7, 1.4, 2.0}) {
+    Scaled accel(1, factor), gyro(factor, 1);
+    const Finding force = finding(findings_of(accel), "specific force");
+    EXPECT_EQ(force.severity, Severity::error) << factor;
+    EXPECT_THAT(force.text, HasSubstr(std::to_string(factor).substr(0, 3)));
+    const Finding turns = finding(findings_of(gyro), "time offset");
+    EXPECT_EQ(turns.severity, Severity::error) << factor;
+    EXPECT_THAT(turns.text, HasSubstr("scale factor"));
+  }
+}
+
+TEST(LogCheck, FactorsThatSensorsHaveAreNot) {
+  for (const double factor : {0.93, 1.07}) {
+    Scaled source(factor, factor);
+    for (const Finding& f : findings_of(source)) {
+      EXPECT_NE(f.severity, Severity::error) << f.subject << ": " << f.text;
+    }
+  }
+}
+
 TEST(LogCheck, ForwardThatIsBackward) {
   ScenarioOptions scenario = city();
   SimulatedSource source(scenario, imu_preset("ADIS16465"));

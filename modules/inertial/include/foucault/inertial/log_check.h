@@ -52,6 +52,8 @@ struct LogFacts {
   double smallest_sigma_m = 0, largest_sigma_m = 0;        ///< horizontal, of fixes
   std::optional<double> lever_arm_m;                       ///< of the first fix
   Eigen::Vector3d mean_force_v = Eigen::Vector3d::Zero();  ///< forward, right, down [m/s^2]
+  /// Length of the specific force over that of the acceleration by fixes minus gravity.
+  std::optional<MeasuredFactor> force_factor;
   RestFacts rest;
   std::optional<TurnMatch> turns;
   /// Correlation of the change of speed with the specific force forward and to the right.

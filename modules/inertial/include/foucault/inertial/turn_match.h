@@ -12,6 +12,13 @@
 /// recording show in this, without any state.
 namespace foucault {
 
+/// What a sensor measures per what it should.
+struct MeasuredFactor {
+  double value = 1;
+  double sigma = 0;
+  int64_t samples = 0;
+};
+
 struct TurnMatch {
   /// Stamps of the IMU minus those of GNSS for the same turn [s]: positive, they are late.
   double offset_s = 0;
@@ -20,7 +27,10 @@ struct TurnMatch {
   double correlation = 0;  ///< of the two, at that offset
   /// Sum of squares that this offset leaves, of that which no offset leaves; 1: they are as good.
   double residual_share = 1;
-  double turned = 0;    ///< sum of the course's changes [rad]
+  double turned = 0;  ///< sum of the course's changes [rad]
+  /// As slope, over gentle turns only, where vehicles that bank do so by less than 12 deg: in a
+  /// bank the turn about the vehicle's vertical is the cosine of it less. None without such.
+  std::optional<MeasuredFactor> gyro_factor;
   int64_t samples = 0;  ///< courses compared
 };
 
@@ -58,6 +68,7 @@ class TurnMatcher {
   /// Of the change of course y and the turn x.
   struct Sums {
     double xx = 0, xy = 0;
+    double gentle_xx = 0, gentle_xy = 0;  ///< the same over gentle turns
   };
   struct Fit {
     double turn = 0;      ///< dy / dx
@@ -69,12 +80,13 @@ class TurnMatcher {
   void compare_ripe();
   void compare(const Change& change);
   Fit fit(const Sums& sums) const;
+  std::optional<MeasuredFactor> gentle_factor(const Sums& sums) const;
   double seconds(int64_t t_ns) const;
 
   double longest_s_, step_s_;
   std::vector<Sums> sums_;
-  double yy_ = 0, turned_ = 0;
-  int64_t samples_ = 0;
+  double yy_ = 0, gentle_yy_ = 0, turned_ = 0;
+  int64_t samples_ = 0, gentle_samples_ = 0;
 
   Eigen::Vector3d up_b_ = Eigen::Vector3d::Zero();  ///< mean specific force
   double up_memory_ = 0;
@@ -88,8 +100,9 @@ class TurnMatcher {
   std::deque<Change> waiting_;
 };
 
-/// What is wrong with clocks, units or axes if turns match as they do, and what to do about it, one
-/// line; none if nothing is grossly wrong. `t_ns`: a stamp of the recording, for its leap seconds.
+/// What is wrong with clocks, units, scale or axes if turns match as they do, and what to do about
+/// it, one line; none if nothing is grossly wrong. `t_ns`: a stamp of the recording, for its leap
+/// seconds.
 std::optional<std::string> gross_mismatch(const TurnMatch& match, int64_t t_ns);
 
 }  // namespace foucault
