@@ -150,6 +150,17 @@ TEST_F(SharedData, AerobaticsStayTogether) {
 
 /// The IMU of this recording was interpolated over 1.5 s, eight times, and the file does not say
 /// so.
+/// With the fixes of the take-off withheld the alignment falls into rolls and loops.
+TEST_F(SharedData, AnOutageAtTakeOffRefusesNoAerobatics) {
+  import_with("apm_fixedwing_testlog2", "apm_fixedwing_testlog2");
+  const Outcome outcome =
+      foucault({"evaluate", log(), "--methods", "ekf", "--config", config("consumer_mems"), "--set",
+                "imu.samples=instantaneous", "--set", "outages.first_s=100", "--set",
+                "outages.length_s=15", "--set", "outages.period_s=45", "--set",
+                "outages.shifts_s=[0,20]", "--no-report", "--out", folder_ / "drift"});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+}
+
 TEST_F(SharedData, LocalFrameWithAPlaceInTheMappingAndHiddenSplices) {
   import_with("kitti_drive0027_oxts", "kitti_drive0027_oxts");
   EXPECT_NE(foucault({"check", log()}).out.find("interpolated over lost data"), std::string::npos);

@@ -6,9 +6,12 @@
 #include <mrpt/obs/CObservationRobotPose.h>
 #include <mrpt/obs/CSensoryFrame.h>
 
+#include <algorithm>
+
 #include "foucault/core/so3.h"
 #include "foucault/geodesy/local_frame.h"
 #include "foucault/geodesy/wgs84.h"
+#include "foucault/rawlog/rawlog_info.h"
 #include "foucault/rawlog/rawlog_source.h"
 #include "mrpt_log.h"
 #include "scratch.h"
@@ -380,6 +383,13 @@ TEST_F(Observations, SamplesOfOneStampAreSpreadInOrder) {
       if (i % 100 == 0) log.write(gps_at(kBegin + i * 10 * kMs));
     }
   }
+  const RawlogInfo info = read_rawlog_info(path);
+  const auto imu_stream = std::find_if(info.streams.begin(), info.streams.end(),
+                                       [](const auto& s) { return s.type == "CObservationIMU"; });
+  ASSERT_NE(imu_stream, info.streams.end());
+  EXPECT_NEAR(imu_stream->burst_samples, 2, 0.02);
+  EXPECT_NEAR(imu_stream->median_interval, 0.01, 1e-5);
+  EXPECT_EQ(imu_stream->gap_count, 0);
   RawlogSource source(path);
   const std::vector<ImuIncrement> increments = all<ImuIncrement>(source);
   ASSERT_EQ(increments.size(), kSamples - 1U);

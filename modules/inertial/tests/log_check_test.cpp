@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include "../src/plausibility.h"
+#include "foucault/core/error.h"
 #include "foucault/core/time.h"
 #include "foucault/inertial/turn_match.h"
 #include "foucault/simulation/faults.h"
@@ -157,6 +159,26 @@ TEST(LogCheck, FactorsThatNoSensorHasAreErrors) {
     EXPECT_EQ(turns.severity, Severity::error) << factor;
     EXPECT_THAT(turns.text, HasSubstr("scale factor"));
   }
+}
+
+/// A run says the same, as soon as it is certain.
+TEST(Plausibility, EndsARunWhoseSensorsHaveSuchFactors) {
+  const auto error_of = [](Source& source) -> std::string {
+    Plausibility plausibility;
+    try {
+      while (const std::optional<Measurement> m = source.next()) {
+        if (const auto* fix = std::get_if<GnssFix>(&*m)) plausibility.add(*fix);
+        if (const auto* increment = std::get_if<ImuIncrement>(&*m)) plausibility.add(*increment);
+      }
+    } catch (const DataError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  Scaled accel(1, 0.5), gyro(0.5, 1), good(0.93, 1.07);
+  EXPECT_THAT(error_of(accel), HasSubstr("specific force is 0.5"));
+  EXPECT_THAT(error_of(gyro), HasSubstr("the gyroscopes turn 0.5"));
+  EXPECT_EQ(error_of(good), "");
 }
 
 TEST(LogCheck, FactorsThatSensorsHaveAreNot) {
