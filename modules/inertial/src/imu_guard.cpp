@@ -92,10 +92,20 @@ bool ImuGuard::Line::is_interpolated() const {
   return straight_ >= kInterpolated && straight_s_ >= kInterpolatedFor;
 }
 
+/// Gyroscopes measure up to 70 rad/s (4000 deg/s), shock sensors up to 2e4 m/s^2; more is a bit
+/// that fell over. Units that are wrong by less are for Plausibility.
+bool ImuGuard::is_measurable(const ImuIncrement& increment) {
+  constexpr double kFastest = 1000;   // [rad/s]
+  constexpr double kStrongest = 1e5;  // [m/s^2]
+  const double dt = std::abs(increment.dt());
+  return increment.dtheta_b.allFinite() && increment.dvel_b.allFinite() &&
+         increment.dtheta_b.norm() <= kFastest * dt && increment.dvel_b.norm() <= kStrongest * dt;
+}
+
 ImuGuard::Verdict ImuGuard::look_at(const ImuIncrement& increment) {
   Verdict verdict;
   ++seen_;
-  if (!increment.dtheta_b.allFinite() || !increment.dvel_b.allFinite()) {
+  if (!is_measurable(increment)) {
     not_finite_.add(increment.t_end_ns);
     return verdict;
   }
@@ -139,8 +149,10 @@ ImuGuard::Verdict ImuGuard::look_at(const ImuIncrement& increment) {
 std::vector<std::string> ImuGuard::summary() const {
   std::vector<std::string> lines;
   if (not_finite_.count > 0) {
-    lines.push_back(fmt::format("{} IMU samples are not finite and were left out, the first at {}",
-                                not_finite_.count, when(not_finite_.first_ns)));
+    lines.push_back(
+        fmt::format("{} IMU samples are not finite, or beyond what any sensor measures, and were "
+                    "left out, the first at {}",
+                    not_finite_.count, when(not_finite_.first_ns)));
   }
   if (disordered_.count > 0) {
     lines.push_back(

@@ -12,8 +12,9 @@ namespace foucault {
 
 /// Looks at increments before they are used.
 ///
-/// Those that are not finite, and those that do not come after the one before, are left out and
-/// counted; of one that begins too early the part that does not overlap remains.
+/// Those that are not finite or beyond what any sensor measures, and those that do not come after
+/// the one before, are left out and counted; of one that begins too early the part that does not
+/// overlap remains.
 ///
 /// An axis that repeats one value, to the last digit, is stuck or clipped: a rate too large for a
 /// vehicle at rest that comes five times in a row, or any that comes for half a second, while
@@ -31,6 +32,9 @@ class ImuGuard {
   };
 
   Verdict look_at(const ImuIncrement& increment);
+
+  /// Finite, and not beyond what any sensor measures.
+  static bool is_measurable(const ImuIncrement& increment);
 
   /// One line a kind: how many were left out, and the first.
   std::vector<std::string> summary() const;

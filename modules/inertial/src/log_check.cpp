@@ -471,7 +471,7 @@ class LogChecker::Impl {
 
   void add(const ImuIncrement& increment) {
     guard_.look_at(increment);
-    if (!increment.dvel_b.allFinite() || !increment.dtheta_b.allFinite()) return;
+    if (!ImuGuard::is_measurable(increment)) return;
     if (increment.t_end_ns <= imu_.facts().last_ns && imu_.facts().count > 0) return;
     imu_.add(increment.t_end_ns);
     force_sum_b_ += increment.dvel_b;
