@@ -121,6 +121,25 @@ std::vector<Eigen::Vector3d> StreamingAutocorrelation::lags() const {
   return lags;
 }
 
+// ---- stretches
+
+void StretchCollector::add(int64_t t_ns, double square) {
+  if (open_.empty()) open_begin_ns_ = t_ns;
+  open_.push_back(square);
+  if (open_.size() == static_cast<std::size_t>(kRunningMeanFixes)) close(t_ns);
+}
+
+void StretchCollector::close(int64_t end_ns) {
+  const double size = std::sqrt(quantile(open_, 0.5) / chi_square_quantile(0.5, kComponents));
+  open_.clear();
+  ++result_.stretches;
+  if (size >= StretchConsistency::kTooLarge) ++result_.too_large;
+  if (!(size > result_.worst)) return;
+  result_.worst = size;
+  result_.worst_begin_ns = open_begin_ns_;
+  result_.worst_end_ns = end_ns;
+}
+
 // ---- one component
 
 void ResidualCollector::add(double z) {
@@ -179,6 +198,7 @@ void ConsistencyCollector::fix(const FixResult& fix) {
   add(square);
   if (!square.used || fix.t_ns < from_ns_) return;
   watch_interval(fix.t_ns);
+  stretches_.add(fix.t_ns, square.value);
   autocorrelation_.add(*z);
   for (Eigen::Index axis = 0; axis < kComponents; ++axis) {
     residuals_[static_cast<std::size_t>(axis)].add((*z)[axis]);
@@ -252,6 +272,7 @@ Consistency ConsistencyCollector::result() const {
   c.single_band = single_band_;
   c.running_mean_band = mean_nees_band(kComponents, kRunningMeanFixes);
   c.nis = consistency(squares_[index_of(NormalizedKind::innovation)]);
+  c.stretches = stretches_.result();
   for (std::size_t axis = 0; axis < residuals_.size(); ++axis) {
     c.innovations[axis] = residuals_[axis].statistics();
   }

@@ -70,21 +70,32 @@ RunMetricsCollector::RunMetricsCollector(const Mounting& mounting, int64_t from_
     : mounting_(mounting), from_ns_(from_ns), consistency_(from_ns, std::move(on_square)) {}
 
 void RunMetricsCollector::epoch(const Epoch& epoch) {
-  if (epochs_ == 0) first_ns_ = epoch.t_ns;
+  if (states_.given_out == 0) states_.begin_ns = epoch.t_ns;
   last_ns_ = epoch.t_ns;
-  ++epochs_;
+  ++states_.given_out;
+  if (is_finite(epoch)) return;
+  if (states_.not_finite == 0) states_.first_not_finite_ns = epoch.t_ns;
+  ++states_.not_finite;
 }
 
 void RunMetricsCollector::fix(const FixResult& fix) {
   consistency_.fix(fix);
   if (fix.verdict != FixVerdict::used) {
     ++rejected_;
+    add_rejected(fix);
     return;
   }
   ++used_;
   if (fix.t_ns < from_ns_) return;
   innovation_.add(fix.innovation_n);
   postfit_.add(fix.postfit_n);
+}
+
+void RunMetricsCollector::add_rejected(const FixResult& fix) {
+  const std::optional<double> nis = normalized_square(fix.innovation_n, fix.innovation_covariance);
+  if (!nis || fix.t_ns < from_ns_) return;
+  rejected_innovation_.add(fix.innovation_n);
+  rejected_nis_sum_ += *nis;
 }
 
 void RunMetricsCollector::reference_error(const Epoch& epoch, const ReferenceError& error) {
@@ -137,8 +148,8 @@ ReferenceMetrics RunMetricsCollector::reference_metrics(const Consistency& consi
 
 RunMetrics RunMetricsCollector::metrics() const {
   RunMetrics m;
-  m.epochs = epochs_;
-  m.duration_s = seconds_between(first_ns_, last_ns_);
+  m.epochs = states_.given_out;
+  m.duration_s = seconds_between(states_.begin_ns, last_ns_);
   m.gnss.used = used_;
   m.gnss.rejected = rejected_;
   m.gnss.samples = innovation_.samples;
@@ -146,6 +157,12 @@ RunMetrics RunMetricsCollector::metrics() const {
   m.gnss.postfit_rms_n = postfit_.mean().cwiseSqrt();
   m.consistency = consistency_.result();
   m.gnss.mean_nis = m.consistency.nis.mean;
+  m.gnss.rejected_samples = rejected_innovation_.samples;
+  m.gnss.rejected_innovation_rms_n = rejected_innovation_.mean().cwiseSqrt();
+  if (m.gnss.rejected_samples > 0) {
+    m.gnss.rejected_mean_nis = rejected_nis_sum_ / static_cast<double>(m.gnss.rejected_samples);
+  }
+  m.trust = trust_in(m.consistency, states_);
   if (position_.squares.samples > 0) m.reference = reference_metrics(m.consistency);
   return m;
 }

@@ -146,6 +146,21 @@ TEST(StreamingAutocorrelation, ShortSeriesGiveFewLags) {
   EXPECT_EQ(streaming.lags()[0].y(), 0);  // all equal
 }
 
+TEST(StretchCollector, SizeIsThatOfMostFixesOfAStretch) {
+  StretchCollector collector;
+  for (int i = 0; i < 3 * kRunningMeanFixes + 10; ++i) {
+    const bool second = i >= kRunningMeanFixes && i < 2 * kRunningMeanFixes;
+    const bool outlier = i % kRunningMeanFixes < 14;  // nearly half of each
+    collector.add(i, outlier ? 1e6 : 2.3659738843753377 * (second ? 25 : 1));
+  }
+  const StretchConsistency s = collector.result();
+  EXPECT_EQ(s.stretches, 3);
+  EXPECT_EQ(s.too_large, 1);
+  EXPECT_NEAR(s.worst, 5, 1e-9);
+  EXPECT_EQ(s.worst_begin_ns, kRunningMeanFixes);
+  EXPECT_EQ(s.worst_end_ns, 2 * kRunningMeanFixes - 1);
+}
+
 TEST(Consistency, WhiteInnovationsOfTheirCovariance) {
   constexpr int kFixes = 20'000;
   const Consistency c = of_fixes(kFixes, 0, 1);

@@ -69,6 +69,25 @@ TEST(RunMetrics, FixesByHand) {
   EXPECT_NEAR(m.mean_nis, ((9 + 1) + (16 + 1)) / 2.0, 1e-13);
 }
 
+/// Beside those of used fixes; a fix that was never predicted has none.
+TEST(RunMetrics, RejectedFixesByHand) {
+  RunMetricsCollector collector{Mounting()};
+  for (const double north : {3.0, 4.0}) {
+    FixResult gated = used_fix(1, {north, 2, 0}, {0, 0, 0});
+    gated.verdict = FixVerdict::gated;
+    collector.fix(gated);
+  }
+  FixResult late;
+  late.verdict = FixVerdict::out_of_order;
+  collector.fix(late);
+  const GnssMetrics m = collector.metrics().gnss;
+  EXPECT_EQ(m.rejected, 3);
+  EXPECT_EQ(m.rejected_samples, 2);
+  EXPECT_NEAR(m.rejected_innovation_rms_n.x(), std::sqrt(12.5), 1e-14);
+  EXPECT_NEAR(m.rejected_innovation_rms_n.y(), 2, 1e-14);
+  EXPECT_NEAR(m.rejected_mean_nis, ((9 + 1) + (16 + 1)) / 2.0, 1e-13);
+}
+
 TEST(RunMetrics, StatisticsStartLaterThanCounts) {
   RunMetricsCollector collector(Mounting(), nanoseconds(2));
   for (const double t : {0.0, 1.0, 2.0, 3.0}) {

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 /// Whether errors are as large as an estimator says they are, as plain values.
@@ -44,6 +45,18 @@ struct SquareConsistency {
   double inside_share = 0;  ///< of the samples in Consistency::single_band; 0.95 if they are
 };
 
+/// kRunningMeanFixes used innovations after another, those of the next stretch after them, and so
+/// on. The size of a stretch is the root of its median square over that of chi-square of three
+/// degrees of freedom: 1 if the covariances are right, and a single fix does not change it.
+struct StretchConsistency {
+  int64_t stretches = 0;
+  int64_t too_large = 0;       ///< of size kTooLarge and more
+  double worst = 0;            ///< the largest size
+  int64_t worst_begin_ns = 0;  ///< its first fix
+  int64_t worst_end_ns = 0;    ///< its last
+  static constexpr double kTooLarge = 3;
+};
+
 /// Counts of bins of equal width over [-kLimit, kLimit).
 struct ResidualHistogram {
   static constexpr double kLimit = 5;
@@ -78,9 +91,17 @@ struct Consistency {
   Band single_band;        ///< holds a normalized square with 95 %, 2.5 % on each side
   Band running_mean_band;  ///< the same for the mean of kRunningMeanFixes independent ones
   SquareConsistency nis;
+  StretchConsistency stretches;
   std::array<ResidualStatistics, 3> innovations;  ///< whitened; north, east, down
   ResidualAutocorrelation autocorrelation;
   std::optional<SquareConsistency> position_nees, velocity_nees, attitude_nees;
+};
+
+/// Whether what a run gave out can be believed.
+struct Trust {
+  bool trustworthy = true;
+  /// One line each: what, and the remedy. What is only remarkable, too, if the run is trustworthy.
+  std::vector<std::string> reasons;
 };
 
 }  // namespace foucault

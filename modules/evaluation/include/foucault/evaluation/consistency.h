@@ -70,6 +70,20 @@ class StreamingAutocorrelation {
   std::deque<Eigen::Array3d> last_;       ///< the same, latest first
 };
 
+/// Cuts a stream of squares of three components into stretches, in bounded memory.
+class StretchCollector {
+ public:
+  void add(int64_t t_ns, double square);
+  const StretchConsistency& result() const { return result_; }
+
+ private:
+  void close(int64_t end_ns);
+
+  std::vector<double> open_;
+  int64_t open_begin_ns_ = 0;
+  StretchConsistency result_;
+};
+
 /// Statistics of one component of whitened innovations.
 class ResidualCollector {
  public:
@@ -119,6 +133,7 @@ class ConsistencyCollector {
   std::array<Squares, 4> squares_;  ///< by kind
   std::array<ResidualCollector, 3> residuals_;
   StreamingAutocorrelation autocorrelation_;
+  StretchCollector stretches_;
   std::deque<double> recent_;  ///< squares of used fixes, as many as a running mean takes
   std::optional<int64_t> last_fix_ns_;
   std::vector<double> intervals_s_;  ///< the first ones

@@ -8,11 +8,12 @@
 #include "foucault/core/interfaces.h"
 #include "foucault/core/result.h"
 #include "foucault/evaluation/consistency.h"
+#include "foucault/evaluation/trust.h"
 
 namespace foucault {
 
-/// Fixes of a run. Root mean squares and the mean NIS are over the used ones from the start of
-/// the statistics on; the counts are over all.
+/// Fixes of a run. Root mean squares and mean NIS are over those from the start of the statistics
+/// on; the counts are over all.
 struct GnssMetrics {
   int64_t used = 0;
   int64_t rejected = 0;                                        ///< for whatever reason
@@ -20,6 +21,10 @@ struct GnssMetrics {
   Eigen::Vector3d innovation_rms_n = Eigen::Vector3d::Zero();  ///< north, east, down [m]
   Eigen::Vector3d postfit_rms_n = Eigen::Vector3d::Zero();     ///< [m]
   double mean_nis = 0;  ///< innovation, squared by its covariance; 3 if that is right
+  /// The same of fixes that were rejected though they could be compared with a prediction.
+  int64_t rejected_samples = 0;
+  Eigen::Vector3d rejected_innovation_rms_n = Eigen::Vector3d::Zero();  ///< [m]
+  double rejected_mean_nis = 0;
 };
 
 /// How often an error lies inside 1, 2 and 3 of its sigmas, each axis; Gaussian errors do with
@@ -49,6 +54,7 @@ struct RunMetrics {
   GnssMetrics gnss;
   std::optional<ReferenceMetrics> reference;  ///< none if no epoch had a reference
   Consistency consistency;
+  Trust trust;
 };
 
 /// Normalized estimation error squared, e' P^-1 e. None if P is not positive definite.
@@ -87,18 +93,20 @@ class RunMetricsCollector : public Sink {
     InsideSigma inside_sigma() const;
   };
 
+  void add_rejected(const FixResult& fix);
   void add_attitude(const Epoch& epoch, int64_t t_ns, const Eigen::Vector3d& euler_error);
   ReferenceMetrics reference_metrics(const Consistency& consistency) const;
 
   Mounting mounting_;
   int64_t from_ns_;
-  int64_t epochs_ = 0;
-  int64_t first_ns_ = 0;
+  StateCount states_;
   int64_t last_ns_ = 0;
   int64_t used_ = 0;
   int64_t rejected_ = 0;
   Squares innovation_;
   Squares postfit_;
+  Squares rejected_innovation_;
+  double rejected_nis_sum_ = 0;
   Errors position_;
   Errors velocity_;
   Errors attitude_;

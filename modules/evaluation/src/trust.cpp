@@ -1,0 +1,104 @@
+#include "foucault/evaluation/trust.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "foucault/core/time.h"
+#include "foucault/evaluation/statistics.h"
+
+namespace foucault {
+namespace {
+
+constexpr int64_t kFewestFixes = 10;
+constexpr Band kUsual{0.5, 1.5};
+constexpr Band kBelievable{0.3, 3};
+constexpr double kChance = 0.999;
+
+struct Finding {
+  bool condemns = false;
+  std::string text;
+};
+
+std::string too_large(double size) {
+  return fmt::format(
+      "innovations are {:.1f} times as large as their sigmas: those of the fixes "
+      "(gnss.sigma_scale), the noise of the IMU (imu.*) or the clocks are wrong; see `foucault "
+      "check`",
+      size);
+}
+
+std::string too_small(double size) {
+  return fmt::format(
+      "innovations are {:.2g} of their sigmas: those of the fixes (gnss.sigma_scale) or the noise "
+      "of the IMU (imu.*) are too large, or errors of the fixes last and the solution is worse "
+      "than its sigmas",
+      size);
+}
+
+std::optional<Finding> on_states(const StateCount& states) {
+  if (states.not_finite == 0) return std::nullopt;
+  return Finding{true,
+                 fmt::format("{} of {} states are not finite, the first {:.1f} s after the start; "
+                             "see `foucault check` for what is wrong there, or try another method",
+                             states.not_finite, states.given_out,
+                             seconds_between(states.begin_ns, states.first_not_finite_ns))};
+}
+
+std::optional<Finding> on_count(const SquareConsistency& nis) {
+  if (nis.samples >= kFewestFixes) return std::nullopt;
+  return Finding{
+      true,
+      fmt::format("only {} fixes support it, and it takes {} to judge a run; record "
+                  "for longer, or see `foucault check` (output.statistics_from_s counts, too)",
+                  nis.samples, kFewestFixes)};
+}
+
+std::optional<Finding> on_size(const SquareConsistency& nis) {
+  if (nis.samples < kFewestFixes) return std::nullopt;
+  const double size = std::sqrt(nis.mean / 3);
+  if (kUsual.holds(size)) return std::nullopt;
+  if (mean_nees_band(3, nis.effective_samples, kChance).holds(nis.mean)) return std::nullopt;
+  return Finding{!kBelievable.holds(size), size > 1 ? too_large(size) : too_small(size)};
+}
+
+/// Where to look. They do not condemn: a third of a run that is wrong by five sigmas, or a
+/// hundredth by thirty, does so by the mean.
+std::optional<Finding> on_stretches(const StretchConsistency& s, int64_t start_ns) {
+  if (s.too_large == 0) return std::nullopt;
+  const double share = static_cast<double>(s.too_large) / static_cast<double>(s.stretches);
+  return Finding{false,
+                 fmt::format("innovations are more than {:.0f} times as large as their sigmas in "
+                             "{:.1f} % of the run, {:.1f} times from {:.0f} to {:.0f} s after the "
+                             "start; look there in the report, and see `foucault check`",
+                             StretchConsistency::kTooLarge, 100 * share, s.worst,
+                             seconds_between(start_ns, s.worst_begin_ns),
+                             seconds_between(start_ns, s.worst_end_ns))};
+}
+
+}  // namespace
+
+bool is_finite(const Epoch& epoch) {
+  return std::isfinite(epoch.position.latitude) && std::isfinite(epoch.position.longitude) &&
+         std::isfinite(epoch.position.height) && epoch.velocity_n.allFinite() &&
+         epoch.q_n_b.coeffs().allFinite() && epoch.bias.gyro.allFinite() &&
+         epoch.bias.accel.allFinite() && epoch.covariance.allFinite();
+}
+
+Trust trust_in(const Consistency& consistency, const StateCount& states) {
+  Trust trust;
+  std::vector<std::string> remarks;
+  for (const std::optional<Finding>& finding :
+       {on_states(states), on_count(consistency.nis), on_size(consistency.nis),
+        on_stretches(consistency.stretches, states.begin_ns)}) {
+    if (!finding) continue;
+    if (finding->condemns) trust.trustworthy = false;
+    (finding->condemns ? trust.reasons : remarks).push_back(finding->text);
+  }
+  trust.reasons.insert(trust.reasons.end(), remarks.begin(), remarks.end());
+  return trust;
+}
+
+}  // namespace foucault

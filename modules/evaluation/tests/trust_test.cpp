@@ -1,0 +1,138 @@
+#include "foucault/evaluation/trust.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "foucault/core/time.h"
+#include "foucault/evaluation/run_metrics.h"
+
+namespace foucault {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+/// A run of independent innovations.
+class MadeUpRun {
+ public:
+  explicit MadeUpRun(unsigned seed = 42) : rng_(seed) {}
+
+  /// `count` used fixes whose innovations are `size` times as large as their sigmas.
+  MadeUpRun& fixes(int count, double size) {
+    for (int i = 0; i < count; ++i)
+      fix(size * Eigen::Vector3d(normal_(rng_), normal_(rng_), normal_(rng_)));
+    return *this;
+  }
+  MadeUpRun& fix(const Eigen::Vector3d& innovation_n, FixVerdict verdict = FixVerdict::used) {
+    FixResult fix;
+    fix.t_ns = nanoseconds(1.7e9 + t_);
+    fix.verdict = verdict;
+    fix.innovation_n = innovation_n;
+    fix.innovation_covariance.setIdentity();
+    collector_.fix(fix);
+    Epoch epoch;
+    epoch.t_ns = fix.t_ns;
+    return state(epoch);
+  }
+  MadeUpRun& state(const Epoch& epoch) {
+    collector_.epoch(epoch);
+    t_ += 1;
+    return *this;
+  }
+  Trust trust() const { return collector_.metrics().trust; }
+
+ private:
+  std::mt19937 rng_;
+  std::normal_distribution<double> normal_;
+  RunMetricsCollector collector_{Mounting()};
+  double t_ = 0;
+};
+
+TEST(Trust, InnovationsOfTheirSizeAreBelieved) {
+  const Trust trust = MadeUpRun().fixes(400, 1).trust();
+  EXPECT_TRUE(trust.trustworthy);
+  EXPECT_THAT(trust.reasons, IsEmpty());
+}
+
+TEST(Trust, OneAndAHalfIsNamedThreeCondemns) {
+  const Trust usual = MadeUpRun().fixes(400, 1.3).trust();
+  EXPECT_TRUE(usual.trustworthy);
+  EXPECT_THAT(usual.reasons, IsEmpty());
+  const Trust named = MadeUpRun().fixes(400, 2).trust();
+  EXPECT_TRUE(named.trustworthy);
+  EXPECT_THAT(named.reasons, ElementsAre(HasSubstr("times as large as their sigmas")));
+  const Trust condemned = MadeUpRun().fixes(400, 4).trust();
+  EXPECT_FALSE(condemned.trustworthy);
+  EXPECT_THAT(condemned.reasons[0], HasSubstr("times as large as their sigmas"));
+}
+
+TEST(Trust, AHalfIsNamedThreeTenthsCondemn) {
+  const Trust usual = MadeUpRun().fixes(400, 0.6).trust();
+  EXPECT_TRUE(usual.trustworthy);
+  EXPECT_THAT(usual.reasons, IsEmpty());
+  const Trust named = MadeUpRun().fixes(400, 0.4).trust();
+  EXPECT_TRUE(named.trustworthy);
+  EXPECT_THAT(named.reasons, ElementsAre(HasSubstr("of their sigmas")));
+  const Trust condemned = MadeUpRun().fixes(400, 0.2).trust();
+  EXPECT_FALSE(condemned.trustworthy);
+  EXPECT_THAT(condemned.reasons, ElementsAre(HasSubstr("of their sigmas")));
+}
+
+/// From ten fixes on, and chance alone condemns none of a thousand.
+TEST(Trust, ShortRunsAreJudgedButNotByChance) {
+  for (unsigned seed = 1; seed <= 1000; ++seed) {
+    EXPECT_TRUE(MadeUpRun(seed).fixes(10, 1).trust().trustworthy) << seed;
+    EXPECT_FALSE(MadeUpRun(seed).fixes(10, 10).trust().trustworthy) << seed;
+  }
+  const Trust few = MadeUpRun().fixes(9, 1).trust();
+  EXPECT_FALSE(few.trustworthy);
+  EXPECT_THAT(few.reasons, ElementsAre(HasSubstr("only 9 fixes")));
+  EXPECT_FALSE(RunMetricsCollector(Mounting()).metrics().trust.trustworthy);
+}
+
+/// Innovations that stay small for long, as those of a receiver's lasting errors may by chance.
+TEST(Trust, ASmallSizeOfFewEffectiveInnovationsIsChance) {
+  Consistency consistency;
+  consistency.nis.samples = 200;
+  consistency.nis.mean = 3 * 0.25 * 0.25;
+  consistency.nis.effective_samples = 1.5;
+  EXPECT_TRUE(trust_in(consistency, {}).trustworthy);
+  consistency.nis.effective_samples = 20;
+  EXPECT_FALSE(trust_in(consistency, {}).trustworthy);
+}
+
+TEST(Trust, AWrongStretchIsNamedAWrongPartCondemns) {
+  const Trust stretch = MadeUpRun().fixes(600, 1).fixes(30, 4).fixes(600, 1).trust();
+  EXPECT_TRUE(stretch.trustworthy);
+  EXPECT_THAT(stretch.reasons, ElementsAre(HasSubstr("from 600 to 629 s after the start")));
+  EXPECT_FALSE(MadeUpRun().fixes(600, 1).fixes(300, 6).trust().trustworthy);
+  EXPECT_FALSE(MadeUpRun().fixes(2970, 1).fixes(30, 40).trust().trustworthy);
+}
+
+TEST(Trust, RejectedFixesDoNotCondemn) {
+  MadeUpRun run;
+  for (int i = 0; i < 300; ++i) run.fixes(1, 1).fix({100, 0, 0}, FixVerdict::gated);
+  EXPECT_TRUE(run.trust().trustworthy);
+}
+
+TEST(Trust, AStateThatIsNotFiniteCondemns) {
+  Epoch broken;
+  broken.t_ns = nanoseconds(1.7e9 + 500);
+  broken.covariance(14, 0) = kNaN;
+  EXPECT_FALSE(is_finite(broken));
+  const Trust trust = MadeUpRun().fixes(400, 1).state(broken).trust();
+  EXPECT_FALSE(trust.trustworthy);
+  EXPECT_THAT(
+      trust.reasons,
+      ElementsAre(HasSubstr("1 of 401 states are not finite, the first 500.0 s after the start")));
+}
+
+}  // namespace
+}  // namespace foucault
