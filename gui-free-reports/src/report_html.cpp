@@ -7,7 +7,7 @@ namespace {
 
 constexpr const char* kStyle = R"css(
 :root { --ink: #1c1e21; --soft: #565b62; --line: #e1e4e8; --paper: #ffffff; --wash: #f6f7f9;
-  --accent: #0072b2; }
+  --accent: #0072b2; --good: #007a5a; --bad: #b3261e; }
 * { box-sizing: border-box; }
 html { scroll-behavior: smooth; }
 body { margin: 0; background: var(--wash); color: var(--ink);
@@ -22,6 +22,12 @@ h2 { font-size: 22px; letter-spacing: -0.01em; margin: 52px 0 14px; }
 p { max-width: 46em; }
 a { color: var(--accent); text-decoration: none; }
 a:hover { text-decoration: underline; }
+.banner { border: 1px solid var(--line); border-left: 6px solid var(--good); border-radius: 8px;
+  padding: 14px 18px; margin: 0 0 24px; overflow-wrap: anywhere; }
+.banner b { color: var(--good); font-size: 19px; }
+.banner p { margin: 4px 0 0; max-width: none; }
+.banner.alarming { border-color: var(--bad); background: #fdf1f0; }
+.banner.alarming b { color: var(--bad); }
 nav { display: flex; flex-wrap: wrap; gap: 6px 22px; margin: 0 0 28px; font-size: 15px; }
 .tiles { display: grid; grid-template-columns: repeat(auto-fit, minmax(190px, 1fr)); gap: 14px;
   margin: 0 0 12px; padding: 0; }
@@ -64,7 +70,7 @@ footer { margin-top: 48px; padding-top: 14px; border-top: 1px solid var(--line);
   main { max-width: none; padding: 0; box-shadow: none; }
   nav, figcaption .files { display: none; }
   h2 { break-after: avoid; margin-top: 9mm; }
-  .tile, table, tr { break-inside: avoid; }
+  .banner, .tile, table, tr { break-inside: avoid; }
   figure { margin: 5mm 0 7mm; }
   figure img { border: none; }
   a { color: inherit; }
@@ -92,6 +98,14 @@ std::string escaped(const std::string& text) {
     }
   }
   return result;
+}
+
+std::string banner(const Banner& banner) {
+  std::string html = fmt::format("<div class=\"banner{}\" role=\"{}\"><b>{}</b>\n",
+                                 banner.alarming ? " alarming" : "",
+                                 banner.alarming ? "alert" : "note", escaped(banner.title));
+  for (const std::string& line : banner.lines) html += fmt::format("<p>{}</p>\n", escaped(line));
+  return html + "</div>\n";
 }
 
 std::string tile(const KeyNumber& number) {
@@ -172,6 +186,7 @@ std::string to_html(const ReportPage& page) {
       "<title>{0}</title>\n<style>{1}</style>\n</head>\n<body>\n<main>\n"
       "<header><h1>{0}</h1><p>{2}</p></header>\n",
       escaped(page.title), kStyle, escaped(page.subtitle));
+  if (page.banner) html += banner(*page.banner);
   if (page.sections.size() > 1) html += navigation(page);
   if (!page.key_numbers.empty()) html += "<div class=\"tiles\">\n";
   for (const KeyNumber& number : page.key_numbers) html += tile(number);

@@ -69,10 +69,20 @@ Section section_from_json(const Json& j, const std::string& folder) {
   return s;
 }
 
+Json banner_to_json(const Banner& b) {
+  return {{"alarming", b.alarming}, {"title", b.title}, {"lines", b.lines}};
+}
+
+Banner banner_from_json(const Json& j) {
+  return {j.at("alarming").get<bool>(), j.at("title").get<std::string>(),
+          j.at("lines").get<std::vector<std::string>>()};
+}
+
 Json page_to_json(const ReportPage& page) {
   Json json{{"title", page.title},       {"subtitle", page.subtitle},
             {"footer", page.footer},     {"key_numbers", Json::array()},
             {"sections", Json::array()}, {"listings", Json::array()}};
+  if (page.banner) json["banner"] = banner_to_json(*page.banner);
   for (const KeyNumber& n : page.key_numbers) {
     json["key_numbers"].push_back(
         {{"label", n.label}, {"value", n.value}, {"unit", n.unit}, {"note", n.note}});
@@ -89,6 +99,7 @@ ReportPage page_from_json(const Json& j, const std::string& folder) {
   page.title = j.at("title").get<std::string>();
   page.subtitle = j.at("subtitle").get<std::string>();
   page.footer = j.at("footer").get<std::string>();
+  if (j.contains("banner")) page.banner = banner_from_json(j.at("banner"));
   for (const Json& n : j.at("key_numbers")) {
     page.key_numbers.push_back({n.at("label").get<std::string>(), n.at("value").get<std::string>(),
                                 n.at("unit").get<std::string>(), n.at("note").get<std::string>()});

@@ -143,6 +143,7 @@ class RunReport::Collector {
     ReportPage page;
     page.title = "Navigation report";
     page.subtitle = subtitle();
+    page.banner = banner;
     page.key_numbers = key_numbers;
     for (const Section& section :
          {overview(), timeline_section(data, subtitle()), errors(),
@@ -157,6 +158,7 @@ class RunReport::Collector {
 
   RunLabels labels;
   RunData data;
+  std::optional<Banner> banner;
   std::vector<KeyNumber> key_numbers;
   std::vector<Table> tables;
 };
@@ -187,6 +189,8 @@ void RunReport::imu_stamp(int64_t t_ns) { collector_->data.add_imu_stamp(t_ns); 
 void RunReport::outage(int64_t begin_ns, int64_t end_ns) {
   collector_->data.add_outage(begin_ns, end_ns);
 }
+
+void RunReport::banner(const Banner& banner) { collector_->banner = banner; }
 
 void RunReport::key_number(const KeyNumber& number) { collector_->key_numbers.push_back(number); }
 

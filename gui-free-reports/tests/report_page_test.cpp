@@ -94,6 +94,23 @@ TEST_F(ReportFolder, PageNeedsNoNetwork) {
   EXPECT_NE(html.find("Figure 2."), std::string::npos);
 }
 
+TEST_F(ReportFolder, BannerStandsAboveEverythingElse) {
+  ReportPage page = small_page();
+  write_report(page, base_ / "report");
+  EXPECT_EQ(files_in(base_ / "report").at("index.html").find("class=\"banner"), std::string::npos);
+  page.banner = Banner{true, "Beware", {"fixes < truth", "clocks"}};
+  write_report(page, base_ / "report");
+  const std::map<std::string, std::string> before = files_in(base_ / "report");
+  const std::string& html = before.at("index.html");
+  const std::size_t banner =
+      html.find("<div class=\"banner alarming\" role=\"alert\"><b>Beware</b>");
+  ASSERT_NE(banner, std::string::npos);
+  EXPECT_LT(banner, html.find("class=\"tiles\""));
+  EXPECT_NE(html.find("<p>fixes &lt; truth</p>\n<p>clocks</p>"), std::string::npos);
+  redraw_report(base_ / "report");
+  EXPECT_EQ(files_in(base_ / "report"), before);
+}
+
 TEST_F(ReportFolder, RedrawnIsIdentical) {
   write_report(small_page(), base_ / "report");
   const std::map<std::string, std::string> before = files_in(base_ / "report");

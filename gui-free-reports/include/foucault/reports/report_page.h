@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -16,6 +17,13 @@ struct KeyNumber {
   std::string value;
   std::string unit;
   std::string note;  ///< one line in small print; may be empty
+};
+
+/// The verdict on all that follows, above everything else.
+struct Banner {
+  bool alarming = false;  ///< it condemns
+  std::string title;
+  std::vector<std::string> lines;  ///< the reasons
 };
 
 struct Table {
@@ -44,6 +52,7 @@ struct Listing {
 struct ReportPage {
   std::string title;
   std::string subtitle;
+  std::optional<Banner> banner = {};
   std::vector<KeyNumber> key_numbers;
   std::vector<Section> sections;
   std::vector<Listing> listings;

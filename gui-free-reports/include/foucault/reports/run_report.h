@@ -50,6 +50,9 @@ class RunReport : public Sink {
   /// A stretch in which fixes were withheld on purpose; shaded in every figure over time.
   void outage(int64_t begin_ns, int64_t end_ns);
 
+  /// Shown above everything else.
+  void banner(const Banner& banner);
+
   /// Shown large at the top, in this order.
   void key_number(const KeyNumber& number);
 
