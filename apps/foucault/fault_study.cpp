@@ -14,6 +14,7 @@
 #include "foucault/core/error.h"
 #include "foucault/core/time.h"
 #include "foucault/evaluation/reference_error.h"
+#include "foucault/evaluation/run_metrics.h"
 #include "foucault/inertial/log_check.h"
 #include "foucault/rawlog/rawlog_source.h"
 #include "methods.h"
@@ -30,14 +31,18 @@ class FaultObserver : public Sink {
  public:
   /// Before anything else.
   void place(const Mounting& mounting) {
+    metrics_.emplace(mounting);
     comparison_.emplace(mounting, [this](const Epoch& epoch, const ReferenceError& error) {
       errors.push_back({epoch.t_ns, error.position_n.head<2>().norm()});
     });
   }
 
   void reference(const ReferencePose& reference) { comparison_->add(reference); }
-  void epoch(const Epoch& epoch) override { comparison_->add(epoch); }
-  void fix(const FixResult& fix) override { ++(fix.verdict == FixVerdict::used ? used : rejected); }
+  void epoch(const Epoch& epoch) override {
+    comparison_->add(epoch);
+    metrics_->epoch(epoch);
+  }
+  void fix(const FixResult& fix) override { metrics_->fix(fix); }
   void notice(const Notice& notice) override {
     if (notice.kind != NoticeKind::aligned) notices.push_back(notice.text);
   }
@@ -48,9 +53,10 @@ class FaultObserver : public Sink {
   };
   std::vector<Error> errors;
   std::vector<std::string> notices;
-  int64_t used = 0, rejected = 0;
+  RunMetrics metrics() const { return metrics_->metrics(); }
 
  private:
+  std::optional<RunMetricsCollector> metrics_;
   std::optional<ReferenceComparison> comparison_;
 };
 
@@ -105,6 +111,14 @@ void add_errors(const FaultCase& fault, const std::vector<FaultObserver::Error>&
   }
 }
 
+/// As the program does: what condemns a run is a warning.
+std::vector<std::string> said(const Trust& trust, const std::vector<std::string>& notices) {
+  std::vector<std::string> all;
+  if (!trust.trustworthy) all = trust.reasons;
+  all.insert(all.end(), notices.begin(), notices.end());
+  return all;
+}
+
 std::string message_of(const std::vector<std::string>& notices) {
   if (notices.empty()) return "";
   if (notices.size() == 1) return notices.front();
@@ -124,6 +138,7 @@ std::string shortened(const std::string& message, const std::string& log) {
 FaultOutcome run_method(const FaultCase& fault, const std::string& method, const Settings& settings,
                         int64_t seed, const std::string& log) {
   FaultObserver observer;
+  RunMetrics metrics;
   FaultOutcome outcome;
   outcome.fault = fault.name;
   outcome.method = method;
@@ -131,14 +146,17 @@ FaultOutcome run_method(const FaultCase& fault, const std::string& method, const
   try {
     const std::optional<std::string> damage = process(log, method, settings, observer);
     outcome.exit_code = damage ? 1 : 0;
-    outcome.message = damage ? shortened(*damage, log) : message_of(observer.notices);
+    metrics = observer.metrics();
+    outcome.message =
+        damage ? shortened(*damage, log) : message_of(said(metrics.trust, observer.notices));
   } catch (const DataError& error) {  // nothing comes out
     outcome.exit_code = 1;
     outcome.message = shortened(error.what(), log);
     return outcome;
   }
-  outcome.used = observer.used;
-  outcome.rejected = observer.rejected;
+  outcome.used = metrics.gnss.used;
+  outcome.rejected = metrics.gnss.rejected;
+  outcome.trust = metrics.trust;
   add_errors(fault, observer.errors, fault_scenario(seed), outcome);
   return outcome;
 }
@@ -160,6 +178,11 @@ std::string error_text(const FaultOutcome& outcome) {
 std::string recovery_text(const FaultOutcome& outcome) {
   if (outcome.errors == 0 || outcome.exit_code != 0) return "-";
   return outcome.recovery_s ? fmt::format("{:.0f}", *outcome.recovery_s) : "never";
+}
+
+std::string trust_text(const FaultOutcome& outcome) {
+  if (!outcome.trust) return "-";
+  return outcome.trust->trustworthy ? "yes" : "no";
 }
 
 /// Stamps differ from method to method and say nothing beside a fault.
@@ -206,14 +229,14 @@ TextTable fault_table(const std::vector<FaultOutcome>& outcomes) {
   TextTable table;
   table.title = "Faults";
   table.header = {"fault",     "injected",   "method",     "seed",     "exit_code", "rms_m",
-                  "largest_m", "recovery_s", "fixes_used", "rejected", "message"};
+                  "largest_m", "recovery_s", "fixes_used", "rejected", "message",   "trustworthy"};
   for (const FaultOutcome& o : outcomes) {
-    table.rows.push_back({o.fault, find_fault_case(o.fault).title, o.method,
-                          fmt::format("{}", o.seed), fmt::format("{}", o.exit_code),
-                          o.errors > 0 ? fmt::format("{:.4f}", o.rms_m) : "",
-                          o.errors > 0 ? fmt::format("{:.4f}", o.largest_m) : "",
-                          o.recovery_s ? fmt::format("{:.1f}", *o.recovery_s) : "",
-                          fmt::format("{}", o.used), fmt::format("{}", o.rejected), o.message});
+    table.rows.push_back(
+        {o.fault, find_fault_case(o.fault).title, o.method, fmt::format("{}", o.seed),
+         fmt::format("{}", o.exit_code), o.errors > 0 ? fmt::format("{:.4f}", o.rms_m) : "",
+         o.errors > 0 ? fmt::format("{:.4f}", o.largest_m) : "",
+         o.recovery_s ? fmt::format("{:.1f}", *o.recovery_s) : "", fmt::format("{}", o.used),
+         fmt::format("{}", o.rejected), o.message, o.trust ? trust_text(o) : ""});
   }
   return table;
 }
@@ -221,8 +244,8 @@ TextTable fault_table(const std::vector<FaultOutcome>& outcomes) {
 TextTable fault_summary(const std::vector<FaultOutcome>& outcomes) {
   TextTable table;
   table.title = "Faults";
-  table.header = {"injected",     "exit code",      "largest error [m]",
-                  "recovery [s]", "fixes left out", "said"};
+  table.header = {"injected",    "exit code", "largest error [m]", "recovery [s]", "fixes left out",
+                  "trustworthy", "said"};
   table.ends_in_words = true;
   std::string last;
   for (const FaultOutcome& first : outcomes) {
@@ -234,7 +257,7 @@ TextTable fault_summary(const std::vector<FaultOutcome>& outcomes) {
          beside(methods, [](const FaultOutcome& o) { return fmt::format("{}", o.exit_code); }),
          beside(methods, error_text), beside(methods, recovery_text),
          beside(methods, [](const FaultOutcome& o) { return fmt::format("{}", o.rejected); }),
-         without_stamps(first.message)});
+         beside(methods, trust_text), without_stamps(first.message)});
   }
   return table;
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "fault_cases.h"
+#include "foucault/core/consistency.h"
 #include "foucault/evaluation/drift_table.h"
 #include "foucault/simulation/scenario.h"
 #include "settings.h"
@@ -20,13 +21,14 @@ struct FaultOutcome {
   std::string fault;
   std::string method;
   int64_t seed = 0;
-  int exit_code = 0;     ///< the program's
-  std::string message;   ///< the error, or what the notices say
-  int64_t used = 0;      ///< fixes
-  int64_t rejected = 0;  ///< fixes
-  int64_t errors = 0;    ///< epochs compared with the truth
-  double rms_m = 0;      ///< horizontal error, from 60 s after the alignment on
-  double largest_m = 0;  ///< its largest
+  int exit_code = 0;           ///< the program's
+  std::string message;         ///< the error, or what the notices say
+  int64_t used = 0;            ///< fixes
+  int64_t rejected = 0;        ///< fixes
+  std::optional<Trust> trust;  ///< none if nothing came out
+  int64_t errors = 0;          ///< epochs compared with the truth
+  double rms_m = 0;            ///< horizontal error, from 60 s after the alignment on
+  double largest_m = 0;        ///< its largest
   /// From the end of the fault (or its start, if it does not end) until the error stays below
   /// kRecoveredSigmas of a fix; none if it does not before the end, or nothing came out.
   std::optional<double> recovery_s;

@@ -87,6 +87,7 @@ void write_report(const RunResult& result, reports::RunReport& report,
                   const std::filesystem::path& folder, Console& console) {
   const StageTimer timer(Stage::draw);
   console.progress("drawing", 0);
+  report.banner(verdict_banner(result));
   for (const reports::KeyNumber& number : key_numbers(result)) report.key_number(number);
   for (const reports::Table& table : metrics_tables(result)) report.table(table);
   report.write((folder / "report").string());
@@ -148,6 +149,7 @@ std::vector<std::string> summary_lines(const RunResult& result) {
     const std::filesystem::path page = std::filesystem::path(result.out) / "report" / "index.html";
     lines.push_back(fmt::format("report     {}", page.string()));
   }
+  lines.push_back(verdict_line(result));
   return lines;
 }
 

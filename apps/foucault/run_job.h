@@ -45,7 +45,7 @@ RunResult run(const RunJob& job, Console& console);
 /// The same into a folder that exists, with no care for what is in it.
 RunResult run_into(const RunJob& job, const std::filesystem::path& folder, Console& console);
 
-/// What a user wants to know first.
+/// What a user wants to know first; the verdict last.
 std::vector<std::string> summary_lines(const RunResult& result);
 
 }  // namespace foucault::app

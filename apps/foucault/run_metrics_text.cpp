@@ -1,8 +1,9 @@
 #include "run_metrics_text.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
-#include <limits>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "profile_text.h"
@@ -23,6 +24,10 @@ Json north_east_down(const Eigen::Vector3d& v, bool exists) {
   return {{"north", v.x()}, {"east", v.y()}, {"down", v.z()}};
 }
 
+double ratio(int64_t part, int64_t whole) {
+  return static_cast<double>(part) / static_cast<double>(whole);
+}
+
 /// Mean over the axes of the share inside 1, 2, 3 sigma; null if there is none.
 Json inside_json(const InsideSigma& inside) {
   if (inside.samples == 0) return nullptr;
@@ -32,8 +37,13 @@ Json inside_json(const InsideSigma& inside) {
 
 Json gnss_json(const GnssMetrics& gnss) {
   const bool exists = gnss.samples > 0;
+  const int64_t fixes = gnss.used + gnss.rejected;
+  const bool compared = gnss.rejected_samples > 0;
   return {{"used", gnss.used},
           {"rejected", gnss.rejected},
+          {"rejected_share", fixes > 0 ? Json(ratio(gnss.rejected, fixes)) : Json(nullptr)},
+          {"rejected_innovation_rms_m", north_east_down(gnss.rejected_innovation_rms_n, compared)},
+          {"rejected_mean_nis", compared ? Json(gnss.rejected_mean_nis) : Json(nullptr)},
           {"innovation_rms_m", north_east_down(gnss.innovation_rms_n, exists)},
           {"postfit_rms_m", north_east_down(gnss.postfit_rms_n, exists)},
           {"mean_nis", exists ? Json(gnss.mean_nis) : Json(nullptr)},
@@ -67,6 +77,13 @@ Json square_json(const SquareConsistency& squares) {
           {"effective_samples", number(squares.effective_samples)}};
 }
 
+Json stretches_json(const StretchConsistency& s) {
+  return {{"fixes_each", kRunningMeanFixes},
+          {"count", s.stretches},
+          {"above_3_sigma", s.too_large},
+          {"worst", s.stretches > 0 ? Json(s.worst) : Json(nullptr)}};
+}
+
 Json residual_json(const ResidualStatistics& s) {
   if (s.samples == 0) return nullptr;
   return {{"mean", s.mean},
@@ -90,6 +107,7 @@ Json consistency_json(const Consistency& c) {
   Json json{{"bound_low", c.single_band.low},
             {"bound_high", c.single_band.high},
             {"nis", square_json(c.nis)},
+            {"stretches", stretches_json(c.stretches)},
             {"whitened_innovation",
              {{"north", residual_json(c.innovations[0])},
               {"east", residual_json(c.innovations[1])},
@@ -115,6 +133,13 @@ std::string innovation_text(const GnssMetrics& gnss) {
   if (gnss.samples == 0) return "-";
   const Eigen::Vector3d& v = gnss.innovation_rms_n;
   return fmt::format("{:.2f} / {:.2f} / {:.2f} cm", 100 * v.x(), 100 * v.y(), 100 * v.z());
+}
+
+/// What speaks for a run.
+std::string size_text(const RunResult& result) {
+  const SquareConsistency& nis = result.metrics.consistency.nis;
+  return fmt::format("innovations of {} fixes are {:.2f} times as large as their sigmas",
+                     nis.samples, std::sqrt(nis.mean / 3));
 }
 
 std::string attitude_text(const ReferenceMetrics& r) {
@@ -170,10 +195,9 @@ reports::Table reference_table(const ReferenceMetrics& r) {
 
 std::string metrics_json(const RunResult& result) {
   const RunMetrics& m = result.metrics;
-  Json json{{"method", result.method},
-            {"epochs", m.epochs},
-            {"duration_s", m.duration_s},
-            {"gnss", gnss_json(m.gnss)}};
+  Json json{{"method", result.method},    {"epochs", m.epochs},
+            {"duration_s", m.duration_s}, {"trustworthy", m.trust.trustworthy},
+            {"reasons", m.trust.reasons}, {"gnss", gnss_json(m.gnss)}};
   if (m.reference) json["reference"] = reference_json(*m.reference);
   json["consistency"] = consistency_json(m.consistency);
   json["statistics_from_s"] = result.statistics_from_s;
@@ -202,6 +226,21 @@ std::vector<std::string> metrics_lines(const RunResult& result) {
                               result.resources.wall_s, result.resources.cpu_s,
                               result.resources.peak_rss_mb));
   return lines;
+}
+
+std::string verdict_line(const RunResult& result) {
+  const Trust& trust = result.metrics.trust;
+  const std::string reasons = fmt::format("{}", fmt::join(trust.reasons, "; "));
+  if (!trust.trustworthy) return fmt::format("verdict    NOT TRUSTWORTHY: {}", reasons);
+  return fmt::format("verdict    trustworthy; {}", reasons.empty() ? size_text(result) : reasons);
+}
+
+reports::Banner verdict_banner(const RunResult& result) {
+  const Trust& trust = result.metrics.trust;
+  if (!trust.trustworthy) return {true, "This run cannot be believed", trust.reasons};
+  std::vector<std::string> lines = trust.reasons;
+  if (lines.empty()) lines.push_back(size_text(result));
+  return {false, "This run is trustworthy", lines};
 }
 
 std::vector<reports::KeyNumber> key_numbers(const RunResult& result) {

@@ -14,6 +14,10 @@ std::string metrics_json(const RunResult& result);
 
 std::vector<std::string> metrics_lines(const RunResult& result);
 
+/// Whether the run can be believed, and why.
+std::string verdict_line(const RunResult& result);
+reports::Banner verdict_banner(const RunResult& result);
+
 std::vector<reports::KeyNumber> key_numbers(const RunResult& result);
 std::vector<reports::Table> metrics_tables(const RunResult& result);
 

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <memory>
 
@@ -22,6 +23,12 @@ std::string method_help() {
 std::string config_help() {
   Settings settings;
   return describe_config(settings);
+}
+
+/// Also where the summary is not shown.
+void warn_if_condemned(const Trust& trust, Console& console) {
+  if (trust.trustworthy) return;
+  console.warn(fmt::format("not trustworthy: {}", fmt::join(trust.reasons, "; ")));
 }
 
 }  // namespace
@@ -51,6 +58,7 @@ std::function<void(Call&)> declare_run(CLI::App& app) {
     o->job.report = !o->no_report;
     o->job.command_line = call.command_line;
     const RunResult result = run(o->job, call.console);
+    warn_if_condemned(result.metrics.trust, call.console);
     for (const std::string& line : summary_lines(result)) call.console.say(line);
     if (result.damage) {
       throw DataError(fmt::format("{}; the results in '{}' are of what came before", *result.damage,

@@ -274,8 +274,6 @@ void NavigationRun::start(const Epoch& aligned) {
   started_before_ = true;
   time_ns_ = initial.t_ns;
   last_node_ns_ = initial.t_ns;
-  constexpr int64_t kSettling = 60 * kNanosecondsPerSecond;
-  settled_ns_ = initial.t_ns + kSettling;
   judge_->start(initial.t_ns);
   last_used_ns_ = initial.t_ns;
   navigator_->start(initial);
@@ -623,7 +621,6 @@ FixVerdict NavigationRun::carry_out(const FixDecision& decision, const GnssFix& 
     case FixDecision::Action::use:
       break;
   }
-  weigh(innovation);
   use(fix, result);
   return FixVerdict::used;
 }
@@ -633,13 +630,6 @@ void NavigationRun::use(const GnssFix& fix, FixResult& result) {
   remember_fix_time();
   const Epoch epoch = navigator_->epoch();
   result.postfit_n = difference_n(fix.antenna, antenna_of(epoch, fix.p_b_a));
-}
-
-void NavigationRun::weigh(const Innovation& innovation) {
-  if (time_ns_ < settled_ns_) return;
-  const Eigen::LLT<Eigen::Matrix3d> llt(innovation.covariance);
-  nis_sum_ += innovation.value_n.dot(llt.solve(innovation.value_n));
-  ++nis_count_;
 }
 
 void NavigationRun::remember_fix_time() {
@@ -670,24 +660,9 @@ void NavigationRun::finish() {
   notice_left_out();
 }
 
-/// Three times is beyond what colours of errors do.
-std::optional<std::string> NavigationRun::misfit() const {
-  constexpr int64_t kEnough = 30;  // fixes
-  constexpr double kMisfit = 3;
-  if (nis_count_ < kEnough) return std::nullopt;
-  const double times = std::sqrt(nis_sum_ / (3 * static_cast<double>(nis_count_)));
-  if (times < kMisfit) return std::nullopt;
-  return fmt::format(
-      "innovations are {:.1f} times as large as their sigmas: those of the fixes "
-      "(gnss.sigma_scale), the noise of the IMU (imu.*) or the clocks are wrong; see `foucault "
-      "check`",
-      times);
-}
-
 void NavigationRun::notice_left_out() {
   std::vector<std::string> lines = guard_->summary();
   for (const std::string& line : fix_guard_->summary()) lines.push_back(line);
-  if (const std::optional<std::string> line = misfit()) lines.push_back(*line);
   if (const int64_t repeated = counts_.of(FixClass::repeated); repeated > 0) {
     lines.push_back(fmt::format("{} fixes repeat the one before them and were left out", repeated));
   }

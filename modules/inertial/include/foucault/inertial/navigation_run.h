@@ -79,7 +79,6 @@ struct NavigationRunOptions {
 /// - Increments that are not finite, or do not come after the one before, are left out, counted and
 ///   named; samples of a clipped or stuck gyroscope are a hole, those of such an
 ///   accelerometer get more noise.
-/// - Innovations of used fixes that are throughout larger than their sigmas are named at the end.
 /// - Fixes up to the alignment's start stamp are not used again and have no FixResult.
 /// - After a new alignment the biases known before it still count, with doubled sigmas.
 /// process() throws DataError for what makes a recording useless: units of the IMU, turned axes,
@@ -177,9 +176,7 @@ class NavigationRun : public Estimator {
   [[noreturn]] void throw_unsound(const std::string& part) const;
   void notice_first_rejection(const GnssFix& fix, FixVerdict verdict);
 
-  void weigh(const Innovation& innovation);
   void notice_left_out();
-  std::optional<std::string> misfit() const;
   void throw_if_nothing_usable() const;
   std::string unusable_fixes() const;
 
@@ -214,9 +211,6 @@ class NavigationRun : public Estimator {
   std::unique_ptr<ImuHole> hole_;          ///< met but not yet bridged
   std::deque<Measurement> beyond_hole_;    ///< what came after it, from the increment that ends it
   bool noticed_bad_ = false;
-  int64_t settled_ns_ = 0;  ///< from when on innovations are weighed
-  double nis_sum_ = 0;      ///< of fixes that were used
-  int64_t nis_count_ = 0;
   Counts counts_;
 };
 
