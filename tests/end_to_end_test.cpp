@@ -21,6 +21,11 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::StartsWith;
 
+std::string last_line(std::string text) {
+  while (!text.empty() && text.back() == '\n') text.pop_back();
+  return text.substr(text.rfind('\n') + 1);
+}
+
 class Trip : public testing::Test {
  protected:
   Trip() {
@@ -120,11 +125,15 @@ TEST_F(Trip, RunWritesSolutionMetricsAndReport) {
   EXPECT_EQ(folder_.lines("run/solution.tum").size(), solution.rows());
   EXPECT_THAT(folder_.text("run/solution.kml"), HasSubstr("</kml>"));
   EXPECT_THAT(folder_.text("run/report/index.html"), HasSubstr("<html"));
+  EXPECT_THAT(folder_.text("run/report/index.html"), HasSubstr("<b>This run is trustworthy</b>"));
+  EXPECT_THAT(last_line(run.out), StartsWith("verdict    trustworthy"));
 
   const json m = metrics("run");
   EXPECT_EQ(m["method"], "refined");
   EXPECT_EQ(m["epochs"], solution.rows());
   EXPECT_NEAR(m["duration_s"], 150, 20);
+  EXPECT_EQ(m["trustworthy"], true);
+  EXPECT_EQ(m["reasons"], json::array());
   EXPECT_GT(m["gnss"]["used"], 100);
   EXPECT_EQ(m["gnss"]["rejected"], 0);
   for (const char* axis : {"north", "east", "down"}) {
@@ -217,6 +226,29 @@ TEST_F(Trip, QuietSaysNothing) {
   EXPECT_EQ(run.exit_code, 0);
   EXPECT_THAT(run.out, IsEmpty());
   EXPECT_THAT(run.err, IsEmpty());
+}
+
+/// The sigmas of its fixes a tenth of what they are.
+TEST_F(Trip, ARunThatCannotBeBelievedSaysSo) {
+  const std::vector<std::string> call{"run", log_,    "--method",
+                                      "ekf", "--set", "gnss.sigma_scale=0.1"};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), call.begin(), call.end());
+    return foucault(more);
+  };
+  const Outcome run = with({"--out", folder_ / "run"});
+  EXPECT_EQ(run.exit_code, 0);
+  EXPECT_THAT(last_line(run.out), StartsWith("verdict    NOT TRUSTWORTHY: innovations are"));
+  const json m = metrics("run");
+  EXPECT_EQ(m["trustworthy"], false);
+  EXPECT_THAT(m["reasons"][0].get<std::string>(), HasSubstr("times as large as their sigmas"));
+  EXPECT_THAT(folder_.text("run/report/index.html"), HasSubstr("class=\"banner alarming\""));
+
+  const Outcome plain = with({"--no-report", "--out", folder_ / "plain"});
+  EXPECT_EQ(last_line(plain.out), last_line(run.out));
+  const Outcome quiet = with({"--quiet", "--no-report", "--out", folder_ / "quiet"});
+  EXPECT_THAT(quiet.out, IsEmpty());
+  EXPECT_THAT(quiet.err, HasSubstr("warning: not trustworthy: innovations are"));
 }
 
 TEST(Demo, LeavesRecordingsASolutionTheTablesAndTheirReports) {

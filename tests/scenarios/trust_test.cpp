@@ -1,0 +1,139 @@
+/// Which runs are believed: simulated trips as they are and with what other people's recordings
+/// have.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "foucault/evaluation/run_metrics.h"
+#include "foucault/simulation/faults.h"
+#include "foucault/simulation/simulated_source.h"
+#include "methods.h"
+#include "settings.h"
+
+namespace foucault::app {
+namespace {
+
+using Change = std::function<void(ImuIncrement&)>;
+
+/// A recording with other increments.
+class ChangedImu : public Source {
+ public:
+  ChangedImu(std::unique_ptr<Source> source, Change change)
+      : source_(std::move(source)), change_(std::move(change)) {}
+
+  std::optional<Measurement> next() override {
+    std::optional<Measurement> measurement = source_->next();
+    if (!measurement) return measurement;
+    if (auto* increment = std::get_if<ImuIncrement>(&*measurement)) change_(*increment);
+    return measurement;
+  }
+  const Mounting& mounting() const override { return source_->mounting(); }
+  double progress() const override { return source_->progress(); }
+
+ private:
+  std::unique_ptr<Source> source_;
+  Change change_;
+};
+
+/// A city trip with RTK at 1 Hz.
+std::unique_ptr<Source> trip(int64_t seed = 1, const ImuNoise& noise = imu_preset("ADIS16465")) {
+  ScenarioOptions scenario;
+  scenario.duration_s = 300;
+  scenario.imu_rate_hz = 100;
+  scenario.seed = seed;
+  return std::make_unique<SimulatedSource>(scenario, noise);
+}
+
+std::unique_ptr<Source> with_fault(const Fault& fault, int64_t seed = 1) {
+  return std::make_unique<FaultySource>(trip(seed), std::vector<Fault>{fault}, seed);
+}
+
+std::unique_ptr<Source> with_imu(Change change) {
+  return std::make_unique<ChangedImu>(trip(), std::move(change));
+}
+
+RunMetrics run(std::unique_ptr<Source> source, const std::string& method,
+               const Settings& settings = {}) {
+  RunMetricsCollector collector(source->mounting());
+  const std::unique_ptr<Estimator> estimator =
+      find_method(method).make(settings, source->mounting(), collector);
+  while (const std::optional<Measurement> measurement = source->next()) {
+    estimator->process(*measurement);
+  }
+  estimator->finish();
+  return collector.metrics();
+}
+
+std::string text(const RunMetrics& m) {
+  std::string text = "size " + std::to_string(std::sqrt(m.gnss.mean_nis / 3)) + " of " +
+                     std::to_string(m.gnss.used) + ", rejected " + std::to_string(m.gnss.rejected);
+  for (const std::string& reason : m.trust.reasons) text += "\n" + reason;
+  return text;
+}
+
+class Trusted : public ::testing::TestWithParam<std::string> {};
+INSTANTIATE_TEST_SUITE_P(Methods, Trusted,
+                         ::testing::Values("ekf", "refined", "rough", "full", "rts", "batch"));
+
+TEST_P(Trusted, CleanTrips) {
+  for (const int64_t seed : {1, 2, 3}) {
+    const RunMetrics m = run(trip(seed), GetParam());
+    EXPECT_TRUE(m.trust.trustworthy) << text(m);
+    // The Earth's rotation neglected shows, with this IMU.
+    EXPECT_EQ(m.trust.reasons.empty(), GetParam() != "rough") << text(m);
+  }
+}
+
+TEST_P(Trusted, TripsWithOutliersOrAHoleInTheImu) {
+  const RunMetrics outliers = run(with_fault({FaultKind::fix_outliers, 0, 300, 0.1}), GetParam());
+  EXPECT_GT(outliers.gnss.rejected, 10);
+  EXPECT_TRUE(outliers.trust.trustworthy) << text(outliers);
+  const RunMetrics hole = run(with_fault({FaultKind::imu_gap, 150, 60}), GetParam());
+  EXPECT_TRUE(hole.trust.trustworthy) << text(hole);
+}
+
+class Condemned : public ::testing::TestWithParam<std::string> {};
+INSTANTIATE_TEST_SUITE_P(Methods, Condemned,
+                         ::testing::Values("ekf", "refined", "rough", "full", "rts", "batch"));
+
+/// A consumer's IMU with the noise of an industrial one.
+TEST_P(Condemned, NoiseOfAnotherClass) {
+  ImuNoise vibrating = imu_preset("ADIS16465");
+  vibrating.gyro_noise_density *= 20;
+  vibrating.accel_noise_density *= 50;
+  const RunMetrics m = run(trip(1, vibrating), GetParam());
+  EXPECT_FALSE(m.trust.trustworthy) << text(m);
+}
+
+TEST_P(Condemned, HalfScale) {
+  const RunMetrics m = run(with_imu([](ImuIncrement& increment) {
+                             increment.dtheta_b *= 0.5;
+                             increment.dvel_b *= 0.5;
+                           }),
+                           GetParam());
+  EXPECT_FALSE(m.trust.trustworthy) << text(m);
+}
+
+TEST_P(Condemned, HalfATurnAboutTheVertical) {
+  const RunMetrics m = run(with_imu([](ImuIncrement& increment) {
+                             increment.dtheta_b.head<2>() *= -1;
+                             increment.dvel_b.head<2>() *= -1;
+                           }),
+                           GetParam());
+  EXPECT_FALSE(m.trust.trustworthy) << text(m);
+}
+
+TEST_P(Condemned, ClocksThreeTenthsOfASecondApart) {
+  const RunMetrics m = run(with_fault({FaultKind::imu_stamps_offset, 0, 1e9, 0.3}), GetParam());
+  EXPECT_FALSE(m.trust.trustworthy) << text(m);
+}
+
+}  // namespace
+}  // namespace foucault::app
