@@ -198,6 +198,7 @@ void ConsistencyCollector::fix(const FixResult& fix) {
   add(square);
   if (!square.used || fix.t_ns < from_ns_) return;
   watch_interval(fix.t_ns);
+  if (square.value > largest_nis_.value) largest_nis_ = square;
   stretches_.add(fix.t_ns, square.value);
   autocorrelation_.add(*z);
   for (Eigen::Index axis = 0; axis < kComponents; ++axis) {
@@ -272,6 +273,7 @@ Consistency ConsistencyCollector::result() const {
   c.single_band = single_band_;
   c.running_mean_band = mean_nees_band(kComponents, kRunningMeanFixes);
   c.nis = consistency(squares_[index_of(NormalizedKind::innovation)]);
+  c.largest_nis = largest_nis_;
   c.stretches = stretches_.result();
   for (std::size_t axis = 0; axis < residuals_.size(); ++axis) {
     c.innovations[axis] = residuals_[axis].statistics();

@@ -22,12 +22,22 @@ struct Finding {
   std::string text;
 };
 
+/// Of a square of three components, or of a mean of such.
+double size_of(double square) { return std::sqrt(square / 3); }
+
 std::string too_large(double size) {
   return fmt::format(
       "innovations are {:.1f} times as large as their sigmas: those of the fixes "
       "(gnss.sigma_scale), the noise of the IMU (imu.*) or the clocks are wrong; see `foucault "
       "check`",
       size);
+}
+
+std::string too_large_but_for_one(const Consistency& c, double others, int64_t start_ns) {
+  return fmt::format(
+      "one innovation, {:.0f} s after the start, is {:.0f} times as large as its sigma, the others "
+      "{:.2f} times: that fix is wrong, or what came before it; look there in the report",
+      seconds_between(start_ns, c.largest_nis.t_ns), size_of(c.largest_nis.value), others);
 }
 
 std::string too_small(double size) {
@@ -56,12 +66,21 @@ std::optional<Finding> on_count(const SquareConsistency& nis) {
                   nis.samples, kFewestFixes)};
 }
 
-std::optional<Finding> on_size(const SquareConsistency& nis) {
-  if (nis.samples < kFewestFixes) return std::nullopt;
-  const double size = std::sqrt(nis.mean / 3);
+std::string wrong_size(const Consistency& c, int64_t start_ns) {
+  const double size = size_of(c.nis.mean);
+  if (size < 1) return too_small(size);
+  const double samples = static_cast<double>(c.nis.samples);
+  const double others = size_of((samples * c.nis.mean - c.largest_nis.value) / (samples - 1));
+  if (kUsual.holds(others)) return too_large_but_for_one(c, others, start_ns);
+  return too_large(size);
+}
+
+std::optional<Finding> on_size(const Consistency& c, int64_t start_ns) {
+  if (c.nis.samples < kFewestFixes) return std::nullopt;
+  const double size = size_of(c.nis.mean);
   if (kUsual.holds(size)) return std::nullopt;
-  if (mean_nees_band(3, nis.effective_samples, kChance).holds(nis.mean)) return std::nullopt;
-  return Finding{!kBelievable.holds(size), size > 1 ? too_large(size) : too_small(size)};
+  if (mean_nees_band(3, c.nis.effective_samples, kChance).holds(c.nis.mean)) return std::nullopt;
+  return Finding{!kBelievable.holds(size), wrong_size(c, start_ns)};
 }
 
 /// Where to look. They do not condemn: a third of a run that is wrong by five sigmas, or a
@@ -91,7 +110,7 @@ Trust trust_in(const Consistency& consistency, const StateCount& states) {
   Trust trust;
   std::vector<std::string> remarks;
   for (const std::optional<Finding>& finding :
-       {on_states(states), on_count(consistency.nis), on_size(consistency.nis),
+       {on_states(states), on_count(consistency.nis), on_size(consistency, states.begin_ns),
         on_stretches(consistency.stretches, states.begin_ns)}) {
     if (!finding) continue;
     if (finding->condemns) trust.trustworthy = false;

@@ -116,6 +116,14 @@ TEST(Trust, AWrongStretchIsNamedAWrongPartCondemns) {
   EXPECT_FALSE(MadeUpRun().fixes(2970, 1).fixes(30, 40).trust().trustworthy);
 }
 
+/// A jump that was believed: noise is not what is wrong.
+TEST(Trust, OneLargeInnovationIsNamedForItself) {
+  const Trust trust = MadeUpRun().fixes(200, 1).fix({500, 0, 0}).fixes(200, 1).trust();
+  EXPECT_FALSE(trust.trustworthy);
+  EXPECT_THAT(trust.reasons,
+              ElementsAre(HasSubstr("one innovation, 200 s after the start, is 289 times")));
+}
+
 TEST(Trust, RejectedFixesDoNotCondemn) {
   MadeUpRun run;
   for (int i = 0; i < 300; ++i) run.fixes(1, 1).fix({100, 0, 0}, FixVerdict::gated);

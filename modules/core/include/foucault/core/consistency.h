@@ -91,6 +91,7 @@ struct Consistency {
   Band single_band;        ///< holds a normalized square with 95 %, 2.5 % on each side
   Band running_mean_band;  ///< the same for the mean of kRunningMeanFixes independent ones
   SquareConsistency nis;
+  NormalizedSquare largest_nis;  ///< value 0 without innovations
   StretchConsistency stretches;
   std::array<ResidualStatistics, 3> innovations;  ///< whitened; north, east, down
   ResidualAutocorrelation autocorrelation;

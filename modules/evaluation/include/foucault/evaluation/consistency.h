@@ -133,6 +133,7 @@ class ConsistencyCollector {
   std::array<Squares, 4> squares_;  ///< by kind
   std::array<ResidualCollector, 3> residuals_;
   StreamingAutocorrelation autocorrelation_;
+  NormalizedSquare largest_nis_;
   StretchCollector stretches_;
   std::deque<double> recent_;  ///< squares of used fixes, as many as a running mean takes
   std::optional<int64_t> last_fix_ns_;
