@@ -46,6 +46,12 @@ class FaultObserver : public Sink {
   void notice(const Notice& notice) override {
     if (notice.kind != NoticeKind::aligned) notices.push_back(notice.text);
   }
+  /// At the end; what condemns the run is said like a notice.
+  void judge() {
+    metrics = metrics_->metrics();
+    if (metrics.trust.trustworthy) return;
+    notices.insert(notices.end(), metrics.trust.reasons.begin(), metrics.trust.reasons.end());
+  }
 
   struct Error {
     int64_t t_ns;
@@ -53,7 +59,7 @@ class FaultObserver : public Sink {
   };
   std::vector<Error> errors;
   std::vector<std::string> notices;
-  RunMetrics metrics() const { return metrics_->metrics(); }
+  RunMetrics metrics;  ///< from judge() on
 
  private:
   std::optional<RunMetricsCollector> metrics_;
@@ -76,6 +82,7 @@ std::optional<std::string> process(const std::string& log, const std::string& me
     estimator->process(*measurement);
   }
   estimator->finish();
+  observer.judge();
   for (const Notice& notice : source.notices()) observer.notice(notice);
   for (const Notice& notice : checker.warnings()) observer.notice(notice);
   return source.damage();
@@ -111,14 +118,6 @@ void add_errors(const FaultCase& fault, const std::vector<FaultObserver::Error>&
   }
 }
 
-/// As the program does: what condemns a run is a warning.
-std::vector<std::string> said(const Trust& trust, const std::vector<std::string>& notices) {
-  std::vector<std::string> all;
-  if (!trust.trustworthy) all = trust.reasons;
-  all.insert(all.end(), notices.begin(), notices.end());
-  return all;
-}
-
 std::string message_of(const std::vector<std::string>& notices) {
   if (notices.empty()) return "";
   if (notices.size() == 1) return notices.front();
@@ -138,7 +137,6 @@ std::string shortened(const std::string& message, const std::string& log) {
 FaultOutcome run_method(const FaultCase& fault, const std::string& method, const Settings& settings,
                         int64_t seed, const std::string& log) {
   FaultObserver observer;
-  RunMetrics metrics;
   FaultOutcome outcome;
   outcome.fault = fault.name;
   outcome.method = method;
@@ -146,17 +144,15 @@ FaultOutcome run_method(const FaultCase& fault, const std::string& method, const
   try {
     const std::optional<std::string> damage = process(log, method, settings, observer);
     outcome.exit_code = damage ? 1 : 0;
-    metrics = observer.metrics();
-    outcome.message =
-        damage ? shortened(*damage, log) : message_of(said(metrics.trust, observer.notices));
+    outcome.message = damage ? shortened(*damage, log) : message_of(observer.notices);
   } catch (const DataError& error) {  // nothing comes out
     outcome.exit_code = 1;
     outcome.message = shortened(error.what(), log);
     return outcome;
   }
-  outcome.used = metrics.gnss.used;
-  outcome.rejected = metrics.gnss.rejected;
-  outcome.trust = metrics.trust;
+  outcome.used = observer.metrics.gnss.used;
+  outcome.rejected = observer.metrics.gnss.rejected;
+  outcome.trust = observer.metrics.trust;
   add_errors(fault, observer.errors, fault_scenario(seed), outcome);
   return outcome;
 }

@@ -35,6 +35,7 @@ TEST_F(Faults, OutliersHardlyMatter) {
       ASSERT_EQ(outliers[i].exit_code, 0) << outliers[i].message;
       EXPECT_LT(outliers[i].rms_m, 1.3 * clean[i].rms_m) << kMethods[i] << seed;
       EXPECT_GT(outliers[i].rejected, 25) << seed;  // 46 in the mean, 3 sigmas
+      EXPECT_TRUE(outliers[i].trust->trustworthy) << seed;
       EXPECT_EQ(clean[i].rejected, 0) << seed;
       EXPECT_EQ(clean[i].message, "");
     }
@@ -84,6 +85,7 @@ TEST_F(Faults, OthersLeaveCentimetres) {
       EXPECT_LT(outcome.rms_m, 0.02) << fault;
       EXPECT_LT(outcome.largest_m, 0.3) << fault;
       EXPECT_TRUE(outcome.recovery_s.has_value()) << fault;
+      EXPECT_EQ(outcome.trust->trustworthy, std::string(fault) != "sigma_small") << fault;
     }
   }
 }
@@ -94,6 +96,12 @@ TEST_F(Faults, BurstsAreMadeEvenAndNamed) {
     EXPECT_LT(outcome.rms_m, 0.02) << outcome.method;
     EXPECT_LT(outcome.largest_m, 0.3) << outcome.method;
     EXPECT_THAT(outcome.message, HasSubstr("stamped on arrival"));
+  }
+}
+
+TEST_F(Faults, SigmasThatAreTooSmallAreNamed) {
+  for (const FaultOutcome& outcome : run("sigma_small")) {
+    EXPECT_THAT(outcome.message, HasSubstr("times as large as their sigmas")) << outcome.method;
   }
 }
 
