@@ -76,10 +76,28 @@ TEST_F(Evaluate, WritesTablesNumbersAndReport) {
     EXPECT_EQ(metrics["methods"][method]["outages"], 2) << method;
     EXPECT_GT(metrics["methods"][method]["horizontal_rmse_m"], 0) << method;
   }
-  EXPECT_THAT(folder_.text("out/report/index.html"), HasSubstr("RMSEs of horizontal"));
+  // Three methods, 5 s and the middle, two axes.
+  EXPECT_EQ(metrics["normalized_drift"].size(), 12u);
+  for (const json& entry : metrics["normalized_drift"]) {
+    EXPECT_EQ(entry["after_s"], 5) << "the middle, too";
+    EXPECT_EQ(entry["outages"], 2);
+    EXPECT_GT(entry["mean_square"], 0);
+    EXPECT_LT(entry["band_low"], 1);
+    EXPECT_GT(entry["band_high"], 1);
+  }
+  ASSERT_EQ(metrics["after_return"].size(), 3u);
+  for (const json& entry : metrics["after_return"]) {
+    EXPECT_LT(entry["horizontal_max_m"], 0.2) << "centimetres, as with fixes";
+    EXPECT_EQ(entry["never_settled"], 0);
+  }
+  EXPECT_THAT(drifts.column("return_max_horizontal_m"), Each(testing::Lt(0.2)));
+  EXPECT_THAT(folder_.text("out/report/index.html"),
+              AllOf(HasSubstr("RMSEs of horizontal"), HasSubstr("Consistency in outages")));
   for (const char* name :
-       {"out/tables/table_iii.csv", "out/tables/table_iv.md", "out/report/drift_rms.png",
-        "out/report/drift_curves_trip.png", "out/report/error_timeline_trip.png"}) {
+       {"out/tables/table_iii.csv", "out/tables/table_iv.md", "out/tables/normalized_drift.csv",
+        "out/tables/after_return.md", "out/report/drift_rms.png",
+        "out/report/normalized_drift_trip.png", "out/report/drift_curves_trip.png",
+        "out/report/error_timeline_trip.png"}) {
     EXPECT_TRUE(fs::exists(folder_.path() / name)) << name;
   }
 }

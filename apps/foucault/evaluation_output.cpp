@@ -153,6 +153,54 @@ Json distances_json(const std::vector<DistanceProfile>& profiles) {
   return json;
 }
 
+Json squares_json(const MethodNormalizedDrifts& method, const NormalizedDrift& drift,
+                  const char* axis, const PooledSquares& squares) {
+  return {{"group", method.group},
+          {"method", method.method},
+          {"after_s", drift.after_s},
+          {"middle", drift.middle},
+          {"axis", axis},
+          {"mean_square", squares.mean},
+          {"band_low", squares.band.low},
+          {"band_high", squares.band.high},
+          {"outages", squares.outages}};
+}
+
+/// An entry a group, method, time and axis; mean squares per degree of freedom.
+Json normalized_json(const std::vector<MethodNormalizedDrifts>& methods) {
+  Json json = Json::array();
+  for (const MethodNormalizedDrifts& method : methods) {
+    for (const NormalizedDrift& drift : method.times) {
+      if (drift.horizontal.outages > 0) {
+        json.push_back(squares_json(method, drift, "horizontal", drift.horizontal));
+      }
+      if (drift.vertical.outages > 0) {
+        json.push_back(squares_json(method, drift, "vertical", drift.vertical));
+      }
+    }
+  }
+  return json;
+}
+
+Json returns_json(const std::vector<PooledReturns>& returns) {
+  const auto number_or_null = [](const std::optional<double>& value) {
+    return value ? Json(*value) : Json(nullptr);
+  };
+  Json json = Json::array();
+  for (const PooledReturns& r : returns) {
+    json.push_back({{"group", r.group},
+                    {"method", r.method},
+                    {"window_s", kReturnWindowS},
+                    {"outages", r.outages},
+                    {"horizontal_rms_m", r.rms_horizontal},
+                    {"horizontal_max_m", r.max_horizontal},
+                    {"median_settled_s", number_or_null(r.median_settled_s)},
+                    {"max_settled_s", number_or_null(r.max_settled_s)},
+                    {"never_settled", r.never_settled}});
+  }
+  return json;
+}
+
 const char* truth_name(DriftTruth truth) {
   return truth == DriftTruth::reference ? "reference" : "withheld_fixes";
 }
@@ -183,6 +231,8 @@ std::string metrics_text(const EvaluationSummary& summary, const EvaluationLabel
   json[summary.row_header() == "IMU" ? "imus" : "recordings"] = rows;
   json["comparisons"] = comparisons_json(summary.rows());
   json["distances"] = distances_json(summary.distances());
+  json["normalized_drift"] = normalized_json(summary.normalized());
+  json["after_return"] = returns_json(summary.returns());
   json["runs"] = runs_json(summary.results());
   json["interval"] = "95 % bootstrap over outages";
   json["command"] = labels.command_line;
@@ -226,7 +276,9 @@ EvaluationSummary::EvaluationSummary(std::vector<ExperimentResult> results)
       methods_(methods_of(results_)),
       overall_(group_outages(results_, Grouping::all)),
       rows_(table_rows(results_)),
-      row_header_(count_distinct(results_, &ExperimentResult::imu) > 1 ? "IMU" : "Recording") {
+      row_header_(count_distinct(results_, &ExperimentResult::imu) > 1 ? "IMU" : "Recording"),
+      normalized_(normalized_drifts(rows_)),
+      returns_(pooled_returns(rows_)) {
   require_outages(overall_, results_);
   distances_ = distance_profiles(distance_groups());
 }
@@ -249,6 +301,14 @@ TextTable EvaluationSummary::statistics_table() const {
   return drift_statistics_table(method_drifts(rows_), row_header_);
 }
 
+TextTable EvaluationSummary::normalized_table() const {
+  return normalized_drift_table(normalized_, row_header_);
+}
+
+TextTable EvaluationSummary::return_table() const {
+  return foucault::return_table(returns_, row_header_);
+}
+
 void write_evaluation(const EvaluationSummary& summary, const EvaluationLabels& labels,
                       const std::filesystem::path& folder) {
   const TextTable drifts =
@@ -260,6 +320,8 @@ void write_evaluation(const EvaluationSummary& summary, const EvaluationLabels& 
   write_table(summary.rms_table(), folder / "tables", "table_iii");
   write_table(summary.difference_table(), folder / "tables", "table_iv");
   write_table(summary.statistics_table(), folder / "tables", "statistics");
+  write_table(summary.normalized_table(), folder / "tables", "normalized_drift");
+  write_table(summary.return_table(), folder / "tables", "after_return");
   if (summary.distances().empty()) return;
   write_table(distance_table(summary.distances(), summary.row_header()), folder / "tables",
               "distance");

@@ -7,6 +7,7 @@
 #include "console.h"
 #include "foucault/evaluation/distance.h"
 #include "foucault/evaluation/experiment.h"
+#include "foucault/evaluation/outage_consistency.h"
 
 /// What an evaluation writes and says.
 namespace foucault::app {
@@ -41,9 +42,15 @@ class EvaluationSummary {
   /// Drift by distance from the start; none if no recording goes far enough.
   const std::vector<DistanceProfile>& distances() const { return distances_; }
 
+  /// Errors over their sigmas, and the returns, of each of rows().
+  const std::vector<MethodNormalizedDrifts>& normalized() const { return normalized_; }
+  const std::vector<PooledReturns>& returns() const { return returns_; }
+
   TextTable rms_table() const;         ///< Table III
   TextTable difference_table() const;  ///< Table IV
   TextTable statistics_table() const;
+  TextTable normalized_table() const;
+  TextTable return_table() const;
 
  private:
   std::vector<ExperimentResult> results_;
@@ -52,10 +59,13 @@ class EvaluationSummary {
   std::vector<MethodOutages> rows_;
   std::string row_header_;
   std::vector<DistanceProfile> distances_;
+  std::vector<MethodNormalizedDrifts> normalized_;
+  std::vector<PooledReturns> returns_;
 };
 
-/// drift.csv, metrics.json, config.yaml and tables/table_iii, table_iv, statistics (.csv, .md); for
-/// recordings that go far, also tables/distance and distance_difference.
+/// drift.csv, metrics.json, config.yaml and tables/table_iii, table_iv, statistics,
+/// normalized_drift, after_return (.csv, .md); for recordings that go far, also tables/distance and
+/// distance_difference.
 void write_evaluation(const EvaluationSummary& summary, const EvaluationLabels& labels,
                       const std::filesystem::path& folder);
 

@@ -223,6 +223,58 @@ std::vector<reports::Table> distance_tables(const EvaluationSummary& summary) {
   return tables;
 }
 
+reports::Bounded bounded(const PooledSquares& squares) {
+  if (squares.outages == 0) return {kNaN, kNaN, kNaN};
+  return {squares.mean, squares.band.low, squares.band.high};
+}
+
+reports::NormalizedErrors::Method normalized_method(const MethodNormalizedDrifts& drifts,
+                                                    const std::vector<std::string>& times) {
+  reports::NormalizedErrors::Method method{drifts.method, {}, {}};
+  for (const std::string& time : times) {
+    const auto found =
+        std::find_if(drifts.times.begin(), drifts.times.end(),
+                     [&](const NormalizedDrift& drift) { return time_text(drift) == time; });
+    const NormalizedDrift drift = found == drifts.times.end() ? NormalizedDrift{} : *found;
+    method.horizontal.push_back(bounded(drift.horizontal));
+    method.vertical.push_back(bounded(drift.vertical));
+  }
+  return method;
+}
+
+/// An entry an IMU, else one for the last group: all recordings together, or the only one.
+std::vector<reports::NormalizedErrors> normalized_errors(const EvaluationSummary& summary) {
+  const std::vector<std::string> times = times_of(summary.normalized());
+  std::vector<reports::NormalizedErrors> all;
+  for (const MethodNormalizedDrifts& drifts : summary.normalized()) {
+    if (summary.row_header() != "IMU" && drifts.group != summary.rows().back().group) continue;
+    if (all.empty() || all.back().name != drifts.group) all.push_back({drifts.group, times, {}});
+    all.back().methods.push_back(normalized_method(drifts, times));
+  }
+  return all;
+}
+
+std::vector<reports::Table> consistency_tables(const EvaluationSummary& summary) {
+  std::vector<reports::Table> tables;
+  if (!summary.normalized().empty()) {
+    tables.push_back(report_table(
+        summary.normalized_table(),
+        "In brackets the band that holds the mean with 95 % if the sigmas are right (chi-square of "
+        "2 or 1 degrees of freedom an outage). Where the truth is a withheld fix, its covariance "
+        "is "
+        "added."));
+  }
+  if (!summary.returns().empty()) {
+    tables.push_back(report_table(
+        summary.return_table(),
+        "From the first fix after an outage on. Never: the error was still, or again, outside of "
+        "the 3-sigma ellipse of the fixes when these seconds were over. Without a reference the "
+        "fixes themselves are the truth, which the method has used: metres are real, centimetres "
+        "say little."));
+  }
+  return tables;
+}
+
 std::vector<reports::KeyNumber> key_numbers(const EvaluationSummary& summary) {
   std::vector<reports::KeyNumber> numbers;
   for (const MethodOutages& o : summary.overall()) {
@@ -283,6 +335,8 @@ reports::EvaluationReport evaluation_report(const EvaluationSummary& summary,
   report.cases = shown_cases(summary);
   report.distances = distance_drifts(summary);
   report.distance_tables = distance_tables(summary);
+  report.normalized = normalized_errors(summary);
+  report.consistency_tables = consistency_tables(summary);
   for (const ComparedRuns& runs : shown_runs(summary)) {
     const std::string name = name_of(runs, summary);
     report.timelines.push_back(timeline(runs, name));

@@ -514,6 +514,80 @@ Figure drift_by_distance(const DistanceDrift& drift, const MethodOrder& order) {
   return figure;
 }
 
+namespace {
+
+using NormalizedColumn = std::vector<Bounded> NormalizedErrors::Method::*;
+
+/// The band of each time; that of the first method which has one, as all have the same outages.
+Series normalized_band(const NormalizedErrors& errors, NormalizedColumn column) {
+  constexpr double kHalfWidth = 0.42;  // of the place of a time
+  Series band;
+  band.label = "95 % if the sigmas are right";
+  band.column = "band";
+  band.mark = Mark::band;
+  band.ink = Ink::sky;
+  band.opacity = 0.35;
+  for (size_t i = 0; i < errors.times.size(); ++i) {
+    for (const NormalizedErrors::Method& method : errors.methods) {
+      const Bounded& number = (method.*column)[i];
+      if (!std::isfinite(number.low)) continue;
+      const auto centre = static_cast<double>(i);
+      band.x.insert(band.x.end(), {centre - kHalfWidth, centre + kHalfWidth, centre + kHalfWidth});
+      band.lower.insert(band.lower.end(), {number.low, number.low, kNaN});
+      band.upper.insert(band.upper.end(), {number.high, number.high, kNaN});
+      break;
+    }
+  }
+  return band;
+}
+
+Panel normalized_panel(const NormalizedErrors& errors, const MethodOrder& order,
+                       NormalizedColumn column, const std::string& label) {
+  constexpr double kSpread = 0.5;  // of the place of a time
+  Panel panel;
+  panel.title = label;
+  panel.x = axis("Time in outage", "", AxisKind::category);
+  panel.x.categories = errors.times;
+  panel.y = axis("Mean square over sigma²", "", AxisKind::log);
+  panel.series.push_back(normalized_band(errors, column));
+  const auto count = static_cast<double>(errors.methods.size());
+  for (size_t m = 0; m < errors.methods.size(); ++m) {
+    const NormalizedErrors::Method& method = errors.methods[m];
+    Series series = method_series(method.method, order);
+    series.mark = Mark::points;
+    series.size = 7;
+    for (size_t i = 0; i < errors.times.size(); ++i) {
+      const double shift = kSpread * ((static_cast<double>(m) + 0.5) / count - 0.5);
+      series.x.push_back(static_cast<double>(i) + shift);
+      series.y.push_back((method.*column)[i].value);
+    }
+    panel.series.push_back(std::move(series));
+  }
+  panel.lines.push_back({Direction::horizontal, 1, "", Ink::gray, true});
+  return panel;
+}
+
+}  // namespace
+
+Figure normalized_drift(const NormalizedErrors& errors, const MethodOrder& order) {
+  Figure figure;
+  figure.name = "normalized_drift_" + file_part(errors.name);
+  figure.title = "Errors in outages over their sigmas";
+  figure.subtitle = errors.name;
+  figure.caption =
+      "Mean over the outages of the squared error over its variance, per degree of freedom, at "
+      "some times in the outage. Right sigmas give 1 (dashed), within the band with 95 %. Points "
+      "that leave the band upwards with time tell a noise of the IMU that fits over a second and "
+      "not over a minute.";
+  figure.height_mm = 110;
+  figure.columns = 2;
+  figure.panels = {
+      normalized_panel(errors, order, &NormalizedErrors::Method::horizontal, "Horizontal"),
+      normalized_panel(errors, order, &NormalizedErrors::Method::vertical, "Vertical"),
+  };
+  return figure;
+}
+
 Figure error_timeline(const ErrorTimeline& timeline, const MethodOrder& order) {
   Panel panel;
   panel.x = axis("Time since start", "s", AxisKind::duration);

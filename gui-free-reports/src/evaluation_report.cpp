@@ -22,6 +22,24 @@ Section case_section(const DriftCase& drift_case, const MethodOrder& order) {
   return section;
 }
 
+Section consistency(const EvaluationReport& report) {
+  Section section;
+  section.title = "Consistency in outages";
+  section.paragraphs = {
+      "Innovations tell whether the noise of the IMU fits over the interval of the fixes. Over an "
+      "outage the same noise has to explain errors a thousand times as large: the squares of the "
+      "errors over the sigmas that the method gave for them are 1 in the mean if it does. Above "
+      "the band the method is surer of itself than it may be, and will reject true fixes when they "
+      "return; below, it is better than it says. A smoother is judged in the middle of the outage.",
+      "Outages are taken as independent: noise of the IMU makes their drift, and each has its own. "
+      "What lasts from one to the next (biases, attitude) makes the true band a little wider."};
+  section.tables = report.consistency_tables;
+  for (const NormalizedErrors& errors : report.normalized) {
+    section.figures.push_back(normalized_drift(errors, report.methods));
+  }
+  return section;
+}
+
 Section distance(const EvaluationReport& report) {
   Section section;
   section.title = "Distance from the start";
@@ -60,6 +78,7 @@ ReportPage evaluation_page(const EvaluationReport& report) {
   for (const DriftCase& drift_case : report.cases) {
     page.sections.push_back(case_section(drift_case, report.methods));
   }
+  if (!report.consistency_tables.empty()) page.sections.push_back(consistency(report));
   if (!report.distances.empty()) page.sections.push_back(distance(report));
   Section last = recordings(report);
   if (!last.figures.empty()) page.sections.push_back(std::move(last));

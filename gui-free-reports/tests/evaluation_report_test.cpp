@@ -102,6 +102,21 @@ DistanceDrift made_up_distances() {
   return drift;
 }
 
+NormalizedErrors made_up_normalized() {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  NormalizedErrors errors{"X", {"5 s", "15 s", "30 s", "60 s", "middle"}, {}};
+  for (size_t m = 0; m < kMethods.size(); ++m) {
+    NormalizedErrors::Method method{kMethods[m], {}, {}};
+    for (size_t i = 0; i < errors.times.size(); ++i) {
+      const double grown = m == 2 ? std::pow(2, double(i)) : 1 + 0.1 * double(m);
+      method.horizontal.push_back({grown, 0.6, 1.5});
+      method.vertical.push_back(i == 3 ? Bounded{nan, nan, nan} : Bounded{0.9, 0.45, 1.8});
+    }
+    errors.methods.push_back(method);
+  }
+  return errors;
+}
+
 ParameterMap made_up_parameters() {
   ParameterMap map;
   map.name = "tune_arw_vrw";
@@ -138,6 +153,8 @@ EvaluationReport made_up_report() {
   report.timelines = {made_up_timeline()};
   report.maps = {made_up_map()};
   report.distances = {made_up_distances()};
+  report.normalized = {made_up_normalized()};
+  report.consistency_tables = {{"Errors over their sigmas", "", false, {"Method"}, {{"ekf"}}}};
   report.footer = "foucault";
   return report;
 }
@@ -227,6 +244,23 @@ TEST(EvaluationFigures, DistancesShowEveryOutageAndTheBinsOnTop) {
   }
 }
 
+TEST(EvaluationFigures, NormalizedDriftIsSeenBesideItsBand) {
+  const Figure figure = normalized_drift(made_up_normalized(), kMethods);
+  ASSERT_EQ(figure.panels.size(), 2U);
+  const Panel& panel = figure.panels[0];
+  ASSERT_EQ(panel.series.size(), 4U);
+  EXPECT_EQ(panel.series[0].mark, Mark::band);
+  EXPECT_EQ(panel.series[0].upper[0], 1.5);
+  EXPECT_EQ(panel.x.categories.size(), 5U);
+  for (size_t m = 1; m < 4; ++m) {
+    EXPECT_EQ(panel.series[m].label, kMethods[m - 1]);
+    EXPECT_NEAR(panel.series[m].x[2], 2, 0.42) << "within the band's width";
+  }
+  EXPECT_EQ(panel.series[3].y[4], 16);
+  // Where there is no number there is no band.
+  EXPECT_EQ(figure.panels[1].series[0].x.size(), 4 * 3U);
+}
+
 TEST(EvaluationFigures, MapsThatReachFarAreInKilometres) {
   EXPECT_EQ(outage_map(made_up_map(), kMethods).panels[0].x.shown_unit, "");
   OutageMap far = made_up_map();
@@ -241,7 +275,8 @@ TEST(EvaluationFigures, SurviveEmptyResults) {
   for (const Figure& figure :
        {drift_curves(empty, kMethods), maximum_drifts(empty, kMethods),
         drift_distribution(empty, kMethods), drift_growth(empty, kMethods), drift_bars({}, {}),
-        error_timeline({}, {}), outage_map({}, {}), parameter_map({}), drift_by_distance({}, {})}) {
+        error_timeline({}, {}), outage_map({}, {}), parameter_map({}), drift_by_distance({}, {}),
+        normalized_drift({}, {})}) {
     EXPECT_NO_THROW(Renderer().png(figure)) << figure.name;
   }
 }
@@ -254,7 +289,7 @@ TEST(EvaluationReportPage, IsWrittenWhole) {
   write_report(page, folder);
   for (const char* name : {"drift_rms", "drift_curves_icm20602", "drift_growth_adis16465",
                            "error_timeline_trip_rawlog", "outage_map_trip_rawlog",
-                           "drift_by_distance_x", "tune_arw_vrw"}) {
+                           "drift_by_distance_x", "normalized_drift_x", "tune_arw_vrw"}) {
     EXPECT_TRUE(std::filesystem::exists(folder / (std::string(name) + ".png"))) << name;
   }
   if (std::getenv("FOUCAULT_KEEP_REPORT") == nullptr) std::filesystem::remove_all(folder);

@@ -1,10 +1,13 @@
 #include "foucault/evaluation/drift.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
+#include "foucault/core/so3.h"
+#include "foucault/core/state.h"
 #include "foucault/core/time.h"
 #include "foucault/geodesy/local_frame.h"
 
@@ -27,7 +30,23 @@ bool sampled_to_the_end(const Outage& outage, const std::vector<DriftSample>& sa
   return samples.back().since_begin_s >= length - std::max(1.0, 0.1 * length);
 }
 
+template <int kSize>
+double square_per_degree(const Eigen::Matrix<double, kSize, 1>& error,
+                         const Eigen::Matrix<double, kSize, kSize>& covariance) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  if (!error.allFinite() || !covariance.allFinite()) return kInfinity;
+  const Eigen::LLT<Eigen::Matrix<double, kSize, kSize>> llt(covariance);
+  if (llt.info() != Eigen::Success) return std::numeric_limits<double>::quiet_NaN();
+  return llt.matrixL().solve(error).squaredNorm() / kSize;
+}
+
 }  // namespace
+
+NormalizedSquares normalized_squares(const Eigen::Vector3d& error_n,
+                                     const Eigen::Matrix3d& covariance_n) {
+  return {square_per_degree<2>(error_n.head<2>(), covariance_n.topLeftCorner<2, 2>()),
+          square_per_degree<1>(error_n.tail<1>(), covariance_n.bottomRightCorner<1, 1>())};
+}
 
 const std::vector<double>& default_drift_marks_s() {
   static const std::vector<double> marks{10, 20, 30, 60};
@@ -50,6 +69,17 @@ std::optional<DriftValue> drift_at(const std::vector<DriftSample>& samples, doub
   return value_of({since_begin_s, error_n});
 }
 
+const DriftSample* sample_near(const std::vector<DriftSample>& samples, double since_begin_s) {
+  constexpr double kFarthest = 1;  // [s]
+  const auto distance = [&](const DriftSample& s) {
+    return std::abs(s.since_begin_s - since_begin_s);
+  };
+  const auto nearest =
+      std::min_element(samples.begin(), samples.end(),
+                       [&](const auto& a, const auto& b) { return distance(a) < distance(b); });
+  return nearest != samples.end() && distance(*nearest) <= kFarthest ? &*nearest : nullptr;
+}
+
 OutageDrift outage_drift(const Outage& outage, std::vector<DriftSample> samples,
                          const std::vector<double>& marks_s) {
   OutageDrift drift;
@@ -69,11 +99,24 @@ Geodetic antenna_position(const Epoch& epoch, const Eigen::Vector3d& p_b_a) {
   return LocalFrame(epoch.position).to_geodetic(epoch.q_n_b * p_b_a);
 }
 
+Eigen::Matrix3d antenna_covariance(const Epoch& epoch, const Eigen::Vector3d& p_b_a) {
+  const Eigen::Matrix3d by_attitude = -epoch.q_n_b.toRotationMatrix() * so3::skew(p_b_a);
+  const auto block = [&epoch](int row, int column) -> Eigen::Matrix3d {
+    return epoch.covariance.block<3, 3>(row, column);
+  };
+  using error_state::kAttitude;
+  using error_state::kPosition;
+  const Eigen::Matrix3d crossed = by_attitude * block(kAttitude, kPosition);
+  return block(kPosition, kPosition) + crossed + crossed.transpose() +
+         by_attitude * block(kAttitude, kAttitude) * by_attitude.transpose();
+}
+
 DriftCollector::DriftCollector(std::vector<double> marks_s) : marks_s_(std::move(marks_s)) {}
 
-void DriftCollector::add(const Outage& outage, int64_t t_ns, const Eigen::Vector3d& error_n) {
+void DriftCollector::add(const Outage& outage, int64_t t_ns, const Eigen::Vector3d& error_n,
+                         const NormalizedSquares& normalized) {
   Samples& samples = outages_.try_emplace(outage.index, Samples{outage, {}}).first->second;
-  samples.samples.push_back({seconds_between(outage.begin_ns, t_ns), error_n});
+  samples.samples.push_back({seconds_between(outage.begin_ns, t_ns), error_n, normalized});
 }
 
 std::vector<OutageDrift> DriftCollector::complete(int64_t until_ns) const {
@@ -86,18 +129,16 @@ std::vector<OutageDrift> DriftCollector::complete(int64_t until_ns) const {
   return drifts;
 }
 
-WithheldTruth::WithheldTruth(Callback callback) : callback_(std::move(callback)) {}
+FixTruth::FixTruth(Callback callback) : callback_(std::move(callback)) {}
 
-void WithheldTruth::withheld(const Outage& outage, const GnssFix& fix) {
-  waiting_.push_back({outage, fix});
-}
+void FixTruth::add(const Outage& outage, const GnssFix& fix) { waiting_.push_back({outage, fix}); }
 
-void WithheldTruth::epoch(const Epoch& epoch) {
+void FixTruth::epoch(const Epoch& epoch) {
   while (!waiting_.empty() && waiting_.front().fix.t_ns < epoch.t_ns) waiting_.pop_front();
   if (waiting_.empty() || waiting_.front().fix.t_ns != epoch.t_ns) return;
   const Truth& truth = waiting_.front();
   const Geodetic antenna = antenna_position(epoch, truth.fix.p_b_a);
-  callback_(truth.outage, epoch, ned_offset(truth.fix.antenna, antenna));
+  callback_(truth.outage, truth.fix, epoch, ned_offset(truth.fix.antenna, antenna));
   waiting_.pop_front();
 }
 

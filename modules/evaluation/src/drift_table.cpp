@@ -94,6 +94,13 @@ std::string seconds_text(int64_t t_ns) {
   return fmt::format("{}.{:09}", t_ns / kNanosecondsPerSecond, t_ns % kNanosecondsPerSecond);
 }
 
+/// Empty without a return; "inf" where the error did not come back.
+std::vector<std::string> return_cells(const std::optional<ReturnError>& error) {
+  if (!error) return {"", "", ""};
+  return {fmt::format("{:.4f}", error->rms), fmt::format("{:.4f}", error->maximum),
+          error->settled_s ? fmt::format("{:.3f}", *error->settled_s) : "inf"};
+}
+
 std::vector<std::string> record_cells(const DriftRecord& record) {
   const Outage& outage = record.drift.outage;
   const GpsTime gps = unix_to_gps(outage.begin_ns);
@@ -117,6 +124,8 @@ std::vector<std::string> record_cells(const DriftRecord& record) {
   }
   const double distance_m = record.drift.distance_m;
   row.push_back(std::isfinite(distance_m) ? fmt::format("{:.3f}", distance_m * 1e-3) : "");
+  const std::vector<std::string> after_return = return_cells(record.drift.after_return);
+  row.insert(row.end(), after_return.begin(), after_return.end());
   return row;
 }
 
@@ -225,7 +234,10 @@ TextTable drift_record_table(const std::vector<DriftRecord>& records,
     table.header.push_back(fmt::format("horizontal_{}s_m", mark_s));
     table.header.push_back(fmt::format("vertical_{}s_m", mark_s));
   }
-  table.header.push_back("distance_km");
+  for (const char* name :
+       {"distance_km", "return_rms_horizontal_m", "return_max_horizontal_m", "return_settled_s"}) {
+    table.header.push_back(name);
+  }
   for (const DriftRecord& record : records) table.rows.push_back(record_cells(record));
   return table;
 }

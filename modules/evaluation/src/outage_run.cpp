@@ -5,6 +5,8 @@
 #include <map>
 #include <utility>
 
+#include "foucault/core/state.h"
+
 namespace foucault {
 namespace {
 
@@ -22,8 +24,13 @@ class DriftMeter : public Sink {
       : observer_(observer),
         by_reference_(options.marks_s),
         by_fixes_(options.marks_s),
-        withheld_([this](const Outage& outage, const Epoch& epoch, const Eigen::Vector3d& error_n) {
-          withheld_error(outage, epoch, error_n);
+        withheld_([this](const Outage& outage, const GnssFix& fix, const Epoch& epoch,
+                         const Eigen::Vector3d& error_n) {
+          withheld_error(outage, fix, epoch, error_n);
+        }),
+        returned_([this](const Outage&, const GnssFix&, const Epoch& epoch,
+                         const Eigen::Vector3d& error_n) {
+          return_by_fixes_.error(epoch.t_ns, error_n);
         }),
         source_(std::move(source), schedule,
                 [this](const Outage& outage, const GnssFix& fix) { withheld(outage, fix); }),
@@ -36,11 +43,16 @@ class DriftMeter : public Sink {
 
   OutageSource& source() { return source_; }
 
-  void reference(const ReferencePose& pose) { comparison_.add(pose); }
+  /// What goes on to the estimator.
+  void see(const Measurement& measurement) {
+    if (const auto* pose = std::get_if<ReferencePose>(&measurement)) comparison_.add(*pose);
+    if (const auto* fix = std::get_if<GnssFix>(&measurement)) see_fix(*fix);
+  }
 
   void epoch(const Epoch& epoch) override {
     if (observer_) observer_->epoch(epoch);
     withheld_.epoch(epoch);
+    returned_.epoch(epoch);
     comparison_.add(epoch);
   }
   void fix(const FixResult& fix) override {
@@ -64,27 +76,49 @@ class DriftMeter : public Sink {
     const bool use_reference = !by_reference.empty() && by_reference.size() >= by_fixes.size();
     result.truth = use_reference ? DriftTruth::reference : DriftTruth::withheld_fixes;
     result.drifts = use_reference ? by_reference : by_fixes;
-    for (OutageDrift& drift : result.drifts) {
-      const auto known = distances_m_.find(drift.outage.index);
-      if (known != distances_m_.end()) drift.distance_m = known->second;
-    }
+    complete(result.drifts, (use_reference ? return_by_reference_ : return_by_fixes_).results());
     return result;
   }
 
  private:
+  void complete(std::vector<OutageDrift>& drifts,
+                const std::map<int64_t, ReturnError>& returns) const {
+    for (OutageDrift& drift : drifts) {
+      const auto distance_m = distances_m_.find(drift.outage.index);
+      if (distance_m != distances_m_.end()) drift.distance_m = distance_m->second;
+      const auto after_return = returns.find(drift.outage.index);
+      if (after_return != returns.end()) drift.after_return = after_return->second;
+    }
+  }
+  void see_fix(const GnssFix& fix) {
+    if (outages_.empty()) return;
+    const Outage& before = outages_.rbegin()->second;
+    return_by_reference_.fix(before, fix);
+    if (return_by_fixes_.fix(before, fix)) returned_.add(before, fix);
+  }
   void withheld(const Outage& outage, const GnssFix& fix) {
     outages_.insert_or_assign(outage.index, outage);
     distances_m_.try_emplace(outage.index, source_.from_first_fix(fix));
-    withheld_.withheld(outage, fix);
+    withheld_.add(outage, fix);
   }
-  void withheld_error(const Outage& outage, const Epoch& epoch, const Eigen::Vector3d& error_n) {
+  void withheld_error(const Outage& outage, const GnssFix& fix, const Epoch& epoch,
+                      const Eigen::Vector3d& error_n) {
     if (observer_) observer_->withheld_error(outage, epoch, error_n);
-    by_fixes_.add(outage, epoch.t_ns, error_n);
+    const Eigen::Matrix3d covariance =
+        antenna_covariance(epoch, fix.p_b_a) + fix.position_covariance;
+    by_fixes_.add(outage, epoch.t_ns, error_n, normalized_squares(error_n, covariance));
   }
   void reference_error(const Epoch& epoch, const ReferenceError& error) {
     if (observer_) observer_->reference_error(epoch, error);
     const std::optional<Outage> outage = source_.outage_at(epoch.t_ns);
-    if (outage) by_reference_.add(*outage, epoch.t_ns, error.position_n);
+    if (!outage) {
+      return_by_reference_.error(epoch.t_ns, error.position_n);
+      return;
+    }
+    const Eigen::Matrix3d covariance =
+        epoch.covariance.block<3, 3>(error_state::kPosition, error_state::kPosition);
+    by_reference_.add(*outage, epoch.t_ns, error.position_n,
+                      normalized_squares(error.position_n, covariance));
   }
 
   OutageRunObserver* observer_;
@@ -92,7 +126,10 @@ class DriftMeter : public Sink {
   std::map<int64_t, double> distances_m_;  ///< of the first fix withheld in each
   DriftCollector by_reference_;
   DriftCollector by_fixes_;
-  WithheldTruth withheld_;
+  ReturnCollector return_by_reference_;
+  ReturnCollector return_by_fixes_;
+  FixTruth withheld_;
+  FixTruth returned_;
   OutageSource source_;
   ReferenceComparison comparison_;
 };
@@ -106,7 +143,7 @@ OutageRunResult run_with_outages(std::unique_ptr<Source> source, const OutageSch
   DriftMeter meter(std::move(source), schedule, options, observer);
   const std::unique_ptr<Estimator> estimator = make_estimator(meter.source().mounting(), meter);
   while (const std::optional<Measurement> measurement = meter.source().next()) {
-    if (const auto* pose = std::get_if<ReferencePose>(&*measurement)) meter.reference(*pose);
+    meter.see(*measurement);
     estimator->process(*measurement);
     if (observer) observer->progress(meter.source().progress());
   }

@@ -56,6 +56,11 @@ TEST(DriftTable, StatisticsHaveARowADirection) {
                           "10.00 [10.00, 10.00]", "10.00 [10.00, 10.00]"));
 }
 
+std::vector<std::string> last_cells(const DriftRecord& record) {
+  const std::vector<std::string> cells = drift_record_table({record}, {10, 20}).rows[0];
+  return {cells.end() - 4, cells.end()};
+}
+
 TEST(DriftTable, OneRowAnOutage) {
   DriftRecord record;
   record.recording = "trip, first.rawlog";
@@ -68,13 +73,17 @@ TEST(DriftTable, OneRowAnOutage) {
             "recording,imu,method,shift_s,outage,begin_unix_s,begin_gps_week,begin_gps_s,length_s,"
             "max_horizontal_m,"
             "max_vertical_m,end_horizontal_m,end_vertical_m,horizontal_10s_m,vertical_10s_m,"
-            "horizontal_20s_m,vertical_20s_m,distance_km\n"
+            "horizontal_20s_m,vertical_20s_m,distance_km,return_rms_horizontal_m,"
+            "return_max_horizontal_m,return_settled_s\n"
             "\"trip, "
             "first.rawlog\",ADIS16465,ekf,75,2,1646881782.300000000,2200,357000.300000000,60,10."
             "0000,2.0000,"
-            "10.0000,2.0000,5.0000,1.0000,,,\n");
+            "10.0000,2.0000,5.0000,1.0000,,,,,,\n");
   record.drift.distance_m = 12345.6;
-  EXPECT_EQ(drift_record_table({record}, {10, 20}).rows[0].back(), "12.346");
+  record.drift.after_return = ReturnError{0.25, 1.5, std::nullopt};
+  EXPECT_EQ(last_cells(record), (std::vector<std::string>{"12.346", "0.2500", "1.5000", "inf"}));
+  record.drift.after_return->settled_s = 2.25;
+  EXPECT_EQ(last_cells(record).back(), "2.250");
 }
 
 TEST(TextTable, QuotesWhatItMust) {

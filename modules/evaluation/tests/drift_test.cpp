@@ -87,10 +87,59 @@ TEST(AntennaPosition, AddsTheLeverArm) {
   EXPECT_LT((ned_offset(kHome, antenna) - Eigen::Vector3d(-2, 1, -3)).norm(), 2e-6);
 }
 
-TEST(WithheldTruth, ComparesAtTheAntenna) {
+TEST(AntennaPosition, CovarianceIsThatOfSmallErrors) {
+  Epoch epoch;
+  epoch.position = kHome;
+  epoch.q_n_b = so3::from_euler({0.1, -0.2, 0.7});
+  const Eigen::Vector3d p_b_a(1, 2, -3);
+  // Columns: errors of one sigma each, correlated; their outer products are the covariance.
+  Eigen::Matrix<double, 15, 6> errors = Eigen::Matrix<double, 15, 6>::Random() * 1e-3;
+  epoch.covariance = errors * errors.transpose();
+  Eigen::Matrix<double, 3, 6> moved;
+  for (int i = 0; i < 6; ++i) {
+    Epoch other = epoch;
+    other.position = LocalFrame(kHome).to_geodetic(errors.col(i).segment<3>(0));
+    other.q_n_b = epoch.q_n_b * so3::exp(Eigen::Vector3d(errors.col(i).segment<3>(6)));
+    moved.col(i) = ned_offset(antenna_position(epoch, p_b_a), antenna_position(other, p_b_a));
+  }
+  const Eigen::Matrix3d expected = moved * moved.transpose();
+  const Eigen::Matrix3d covariance = antenna_covariance(epoch, p_b_a);
+  // Of second order in errors of 2 mrad.
+  EXPECT_LT((covariance - expected).norm(), 4e-3 * expected.norm());
+}
+
+TEST(NormalizedSquares, ArePerDegreeOfFreedom) {
+  Eigen::Matrix3d covariance;
+  covariance << 4, 1, 0, 1, 2, 0, 0, 0, 9;
+  const NormalizedSquares squares = normalized_squares({2, 1, -6}, covariance);
+  // [2 1] [4 1; 1 2]^-1 [2 1]' = (2 * 4 - 2 * 2 + 4) / 7
+  EXPECT_NEAR(squares.horizontal, 8.0 / 7 / 2, 1e-14);
+  EXPECT_NEAR(squares.vertical, 4, 1e-14);
+}
+
+TEST(NormalizedSquares, ADivergedEstimateIsInfiniteAndOneWithoutSigmasNone) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_TRUE(std::isinf(normalized_squares({nan, 0, 0}, Eigen::Matrix3d::Identity()).horizontal));
+  EXPECT_TRUE(std::isinf(normalized_squares({0, 0, 0}, Eigen::Matrix3d::Constant(nan)).vertical));
+  const NormalizedSquares none = normalized_squares({1, 1, 1}, Eigen::Matrix3d::Zero());
+  EXPECT_TRUE(std::isnan(none.horizontal));
+  EXPECT_TRUE(std::isnan(none.vertical));
+}
+
+TEST(SampleNear, IsTheNearestWithinASecond) {
+  const std::vector<DriftSample> samples{{1, {1, 0, 0}}, {2, {2, 0, 0}}, {8, {8, 0, 0}}};
+  EXPECT_EQ(sample_near(samples, 1.6), &samples[1]);
+  EXPECT_EQ(sample_near(samples, 9), &samples[2]);
+  EXPECT_EQ(sample_near(samples, 5), nullptr);
+  EXPECT_EQ(sample_near({}, 5), nullptr);
+}
+
+TEST(FixTruth, ComparesAtTheAntenna) {
   std::vector<Eigen::Vector3d> errors;
-  WithheldTruth truth([&](const Outage& outage, const Epoch& at, const Eigen::Vector3d& error_n) {
+  FixTruth truth([&](const Outage& outage, const GnssFix& fix, const Epoch& at,
+                     const Eigen::Vector3d& error_n) {
     EXPECT_EQ(outage.index, kOutage.index);
+    EXPECT_EQ(fix.t_ns, after_begin(2));
     EXPECT_EQ(at.t_ns, after_begin(2));
     errors.push_back(error_n);
   });
@@ -99,7 +148,7 @@ TEST(WithheldTruth, ComparesAtTheAntenna) {
     fix.t_ns = after_begin(t);
     fix.p_b_a = {0, 0, -2};
     fix.antenna = kHome;
-    truth.withheld(kOutage, fix);
+    truth.add(kOutage, fix);
   }
   Epoch epoch;  // 2 m below the antenna, and off by (0.3, -0.4, 0.1)
   epoch.position = LocalFrame(kHome).to_geodetic({0.3, -0.4, 2.1});

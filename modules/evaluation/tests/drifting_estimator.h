@@ -14,6 +14,9 @@ namespace foucault::test {
 inline const Geodetic kHome{0.84, 0.2, 500};
 inline const Eigen::Vector3d kLeverArm(0.1, -0.3, -0.8);
 
+inline constexpr double kFixSigma = 0.3;       // [m]
+inline constexpr double kEstimateSigma = 0.4;  // [m]
+
 /// A vehicle at rest at kHome: fixes of its antenna at 2 Hz, references at 4 Hz, IMU at 4 Hz.
 class RestSource : public Source {
  public:
@@ -39,6 +42,7 @@ class RestSource : public Source {
     GnssFix fix;
     fix.t_ns = t_ns;
     fix.antenna = LocalFrame(kHome).to_geodetic(kLeverArm);
+    fix.position_covariance = kFixSigma * kFixSigma * Eigen::Matrix3d::Identity();
     fix.p_b_a = kLeverArm;
     return fix;
   }
@@ -62,7 +66,8 @@ class RestSource : public Source {
   Mounting mounting_;
 };
 
-/// Drifts north by `scale` times 0.01 m/s^2 t^2 and down by 0.1 m/s t since its last fix.
+/// Drifts north by `scale` times 0.01 m/s^2 t^2 and down by 0.1 m/s t since its last fix, and says
+/// that each of its positions has kEstimateSigma.
 class DriftingEstimator : public Estimator {
  public:
   explicit DriftingEstimator(Sink& sink, double scale = 1) : sink_(sink), scale_(scale) {}
@@ -79,6 +84,7 @@ class DriftingEstimator : public Estimator {
     Epoch epoch;
     epoch.t_ns = t_ns;
     epoch.position = LocalFrame(kHome).to_geodetic({scale_ * 0.01 * t * t, 0, 0.1 * t});
+    epoch.covariance.diagonal().head<3>().setConstant(kEstimateSigma * kEstimateSigma);
     sink_.epoch(epoch);
   }
 

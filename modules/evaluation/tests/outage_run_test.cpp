@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <memory>
+#include <optional>
 
 #include "drifting_estimator.h"
 
@@ -41,12 +43,33 @@ void expect_known_drift(const OutageRunResult& result) {
   EXPECT_GE(result.cpu_s, 0);
 }
 
+/// After 20 s: 4 m to the north, 2 m down.
+void expect_normalized(const OutageRunResult& result, double sigma) {
+  for (const OutageDrift& d : result.drifts) {
+    const DriftSample* sample = sample_near(d.samples, 20);
+    ASSERT_TRUE(sample);
+    EXPECT_NEAR(sample->normalized.horizontal, 16 / (sigma * sigma) / 2, 1e-2);
+    EXPECT_NEAR(sample->normalized.vertical, 4 / (sigma * sigma), 1e-2);
+  }
+}
+
+/// The estimate is on every fix, and at most a quarter of a second of drift away from it.
+void expect_return(const OutageRunResult& result) {
+  for (const OutageDrift& d : result.drifts) {
+    ASSERT_TRUE(d.after_return);
+    EXPECT_LT(d.after_return->maximum, 0.01 * 0.25 * 0.25 + 1e-6);
+    EXPECT_EQ(d.after_return->settled_s, 0);
+  }
+}
+
 TEST(OutageRun, AgainstTheReference) {
   const OutageRunResult result =
       run_with_outages(std::make_unique<RestSource>(275, true), schedule(), drifting());
   EXPECT_EQ(result.truth, DriftTruth::reference);
   expect_known_drift(result);
   EXPECT_EQ(result.drifts[0].samples.size(), 120u);  // at 4 Hz
+  expect_normalized(result, test::kEstimateSigma);
+  expect_return(result);
 }
 
 TEST(OutageRun, AgainstWithheldFixes) {
@@ -55,6 +78,47 @@ TEST(OutageRun, AgainstWithheldFixes) {
   EXPECT_EQ(result.truth, DriftTruth::withheld_fixes);
   expect_known_drift(result);
   EXPECT_EQ(result.drifts[0].samples.size(), 60u);  // at 2 Hz
+  expect_normalized(result, std::hypot(test::kEstimateSigma, test::kFixSigma));
+  expect_return(result);
+}
+
+/// Takes fixes only from ten seconds after an outage on, or not at all.
+class LockedOut : public Estimator {
+ public:
+  LockedOut(Sink& sink, bool for_good) : estimator_(sink), for_good_(for_good) {}
+  void process(const Measurement& measurement) override {
+    if (const auto* fix = std::get_if<GnssFix>(&measurement)) {
+      if (last_ns_ && seconds_between(*last_ns_, fix->t_ns) > 20) return_ns_ = fix->t_ns;
+      last_ns_ = fix->t_ns;
+      const bool locked = return_ns_ && seconds_between(*return_ns_, fix->t_ns) < 10;
+      if (locked || (return_ns_ && for_good_)) return;
+    }
+    estimator_.process(measurement);
+  }
+  void finish() override {}
+
+ private:
+  DriftingEstimator estimator_;
+  bool for_good_;
+  std::optional<int64_t> last_ns_;
+  std::optional<int64_t> return_ns_;
+};
+
+TEST(OutageRun, AnEstimatorThatRejectsFixesShowsInTheReturn) {
+  for (const bool with_reference : {true, false}) {
+    for (const bool for_good : {false, true}) {
+      const OutageRunResult result =
+          run_with_outages(std::make_unique<RestSource>(275, with_reference), schedule(),
+                           [for_good](const Mounting&, Sink& sink) {
+                             return std::make_unique<LockedOut>(sink, for_good);
+                           });
+      ASSERT_EQ(result.drifts.size(), 3u);
+      const std::optional<ReturnError>& error = result.drifts[0].after_return;
+      ASSERT_TRUE(error);
+      EXPECT_NEAR(error->maximum, for_good ? 0.01 * 50 * 50 : 0.01 * 40 * 40, 0.8);
+      EXPECT_EQ(error->settled_s, for_good ? std::nullopt : std::optional(10.0));
+    }
+  }
 }
 
 TEST(OutageRun, WithoutOutagesThereIsNoDrift) {

@@ -101,6 +101,19 @@ struct DistanceDrift {
   std::vector<Method> methods;
 };
 
+/// Errors in outages over their sigmas: mean squares per degree of freedom, 1 if the sigmas are
+/// right, each between the ends of the band that then holds it. Not finite: none.
+struct NormalizedErrors {
+  struct Method {
+    std::string method;
+    std::vector<Bounded> horizontal;  ///< an entry a time
+    std::vector<Bounded> vertical;
+  };
+  std::string name;                ///< of the case
+  std::vector<std::string> times;  ///< in the outage, e.g. "30 s", "middle"
+  std::vector<Method> methods;     ///< on the same outages
+};
+
 /// Names of methods in the order of their colours; every figure gives a method the same colour.
 using MethodOrder = std::vector<std::string>;
 
@@ -116,6 +129,8 @@ Figure drift_growth(const DriftCase& drift_case, const MethodOrder& order);
 Figure drift_bars(const std::vector<DriftRms>& rms, const MethodOrder& order);
 /// Largest drift of each outage and its RMS in bins, on a logarithmic axis.
 Figure drift_by_distance(const DistanceDrift& drift, const MethodOrder& order);
+/// Mean squares by time in the outage, with their bands, on a logarithmic axis.
+Figure normalized_drift(const NormalizedErrors& errors, const MethodOrder& order);
 Figure error_timeline(const ErrorTimeline& timeline, const MethodOrder& order);
 Figure outage_map(const OutageMap& map, const MethodOrder& order);
 
@@ -148,13 +163,15 @@ struct EvaluationReport {
   std::vector<DriftCase> cases;
   std::vector<DistanceDrift> distances;  ///< if recordings go far enough
   std::vector<Table> distance_tables;
+  std::vector<NormalizedErrors> normalized;
+  std::vector<Table> consistency_tables;
   std::vector<ErrorTimeline> timelines;
   std::vector<OutageMap> maps;
   std::vector<Listing> listings;
   std::string footer;
 };
 
-/// The page: overview with tables and bars, a section a case, distance, recordings.
+/// The page: overview with tables and bars, a section a case, consistency, distance, recordings.
 ReportPage evaluation_page(const EvaluationReport& report);
 
 }  // namespace foucault::reports

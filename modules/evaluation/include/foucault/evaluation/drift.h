@@ -12,14 +12,27 @@
 
 #include "foucault/core/result.h"
 #include "foucault/evaluation/outage.h"
+#include "foucault/evaluation/return_error.h"
 
 /// Drift: what the estimate errs by during an outage.
 namespace foucault {
+
+/// An error squared by the covariance that was given for it, over its degrees of freedom (2 and 1):
+/// 1 in the mean if that is right. Infinite where the estimate was not a number; NaN: no sigmas.
+struct NormalizedSquares {
+  double horizontal = std::numeric_limits<double>::quiet_NaN();
+  double vertical = std::numeric_limits<double>::quiet_NaN();
+};
+
+/// Of an error in NED; NaN where the covariance is not positive definite.
+NormalizedSquares normalized_squares(const Eigen::Vector3d& error_n,
+                                     const Eigen::Matrix3d& covariance_n);
 
 /// Error at one instant of an outage.
 struct DriftSample {
   double since_begin_s = 0;
   Eigen::Vector3d error_n = Eigen::Vector3d::Zero();  ///< estimate minus truth, NED [m]
+  NormalizedSquares normalized = {};
 
   double horizontal() const { return error_n.head<2>().norm(); }
   double vertical() const { return std::abs(error_n.z()); }
@@ -40,6 +53,7 @@ struct OutageDrift {
   std::vector<DriftSample> samples;  ///< in order of time
   /// Straight line from the recording's first fix to the first one withheld [m]; NaN: unknown.
   double distance_m = std::numeric_limits<double>::quiet_NaN();
+  std::optional<ReturnError> after_return;  ///< none if no fix followed
 };
 
 /// Times after the beginning of an outage at which its drift is reported [s].
@@ -53,8 +67,13 @@ std::optional<DriftValue> drift_at(const std::vector<DriftSample>& samples, doub
 OutageDrift outage_drift(const Outage& outage, std::vector<DriftSample> samples,
                          const std::vector<double>& marks_s);
 
-/// Position of the antenna by an epoch.
+/// The sample nearest to a time after the beginning, at most 1 s from it; null if there is none.
+/// Not interpolated: an error between two has another covariance.
+const DriftSample* sample_near(const std::vector<DriftSample>& samples, double since_begin_s);
+
+/// Position of the antenna by an epoch, and its covariance in NED [m^2].
 Geodetic antenna_position(const Epoch& epoch, const Eigen::Vector3d& p_b_a);
+Eigen::Matrix3d antenna_covariance(const Epoch& epoch, const Eigen::Vector3d& p_b_a);
 
 /// Collects the errors during outages.
 class DriftCollector {
@@ -62,7 +81,8 @@ class DriftCollector {
   explicit DriftCollector(std::vector<double> marks_s = default_drift_marks_s());
 
   /// In order of stamps.
-  void add(const Outage& outage, int64_t t_ns, const Eigen::Vector3d& error_n);
+  void add(const Outage& outage, int64_t t_ns, const Eigen::Vector3d& error_n,
+           const NormalizedSquares& normalized = {});
 
   bool empty() const { return outages_.empty(); }
 
@@ -80,15 +100,17 @@ class DriftCollector {
   std::map<int64_t, Samples> outages_;
 };
 
-/// Compares epochs with the withheld fix of the same stamp, at the antenna: the truth where there
-/// is no reference. Epochs come at any time after their fix, in order of stamps.
-class WithheldTruth {
+/// Compares epochs with the fix of the same stamp, at the antenna: the truth where there is no
+/// reference. Epochs come at any time after their fix, in order of stamps.
+class FixTruth {
  public:
-  using Callback = std::function<void(const Outage&, const Epoch&, const Eigen::Vector3d& error_n)>;
+  using Callback = std::function<void(const Outage&, const GnssFix&, const Epoch&,
+                                      const Eigen::Vector3d& error_n)>;
 
-  explicit WithheldTruth(Callback callback);
+  explicit FixTruth(Callback callback);
 
-  void withheld(const Outage& outage, const GnssFix& fix);
+  /// `outage`: the one that the fix belongs to.
+  void add(const Outage& outage, const GnssFix& fix);
   void epoch(const Epoch& epoch);
 
  private:

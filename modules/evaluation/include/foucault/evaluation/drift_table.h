@@ -61,8 +61,11 @@ struct DriftRecord {
 
 /// A row an outage and method. Columns: recording, imu, method, shift_s, outage (from 1),
 /// begin_unix_s, begin_gps_week, begin_gps_s, length_s, max_horizontal_m, max_vertical_m,
-/// end_horizontal_m, end_vertical_m, horizontal_<mark>s_m, vertical_<mark>s_m for each mark, and
-/// distance_km; empty where there is no value.
+/// end_horizontal_m, end_vertical_m, horizontal_<mark>s_m, vertical_<mark>s_m for each mark,
+/// distance_km, and of the return (see ReturnError) return_rms_horizontal_m,
+/// return_max_horizontal_m, return_settled_s ("inf": never); empty where there is no value.
+/// Without a reference the errors in the return are those against fixes that the method has used:
+/// centimetres there say little, metres and more are real.
 TextTable drift_record_table(const std::vector<DriftRecord>& records,
                              const std::vector<double>& marks_s);
 
