@@ -84,6 +84,18 @@ Json stretches_json(const StretchConsistency& s) {
           {"worst", s.stretches > 0 ? Json(s.worst) : Json(nullptr)}};
 }
 
+Json predictions_json(const std::vector<PredictionConsistency>& predictions) {
+  Json json = Json::array();
+  for (const PredictionConsistency& p : predictions) {
+    json.push_back({{"after_s", p.ahead_s},
+                    {"mean_nis", p.mean_nis},
+                    {"mean_low", p.mean_band.low},
+                    {"mean_high", p.mean_band.high},
+                    {"samples", p.samples}});
+  }
+  return json;
+}
+
 Json residual_json(const ResidualStatistics& s) {
   if (s.samples == 0) return nullptr;
   return {{"mean", s.mean},
@@ -108,6 +120,7 @@ Json consistency_json(const Consistency& c) {
             {"bound_high", c.single_band.high},
             {"nis", square_json(c.nis)},
             {"stretches", stretches_json(c.stretches)},
+            {"horizons", predictions_json(c.predictions)},
             {"whitened_innovation",
              {{"north", residual_json(c.innovations[0])},
               {"east", residual_json(c.innovations[1])},

@@ -76,6 +76,10 @@ void RunOutput::fix(const FixResult& fix) {
   if (metrics_) metrics_->fix(fix);
 }
 
+void RunOutput::prediction(const PredictionResult& prediction) {
+  if (metrics_) metrics_->prediction(prediction);
+}
+
 void RunOutput::notice(const Notice& notice) {
   if (report_ != nullptr) report_->notice(notice);
   if (notice.kind == NoticeKind::aligned) {

@@ -28,6 +28,8 @@ class RunOutput : public Sink {
   void epoch(const Epoch& epoch) override;
   void fix(const FixResult& fix) override;
   void notice(const Notice& notice) override;
+  bool wants_predictions() const override { return true; }
+  void prediction(const PredictionResult& prediction) override;
   /// Why the log broke off, for the report; the command says it at its end.
   void damage(const std::string& text);
 

@@ -104,6 +104,43 @@ std::string nees_verdict(const Consistency& c) {
   return text;
 }
 
+std::string prediction_verdict(const std::vector<PredictionConsistency>& predictions) {
+  const auto outside =
+      std::find_if(predictions.rbegin(), predictions.rend(),
+                   [](const PredictionConsistency& p) { return !p.mean_band.holds(p.mean_nis); });
+  if (predictions.empty()) return {};
+  if (outside == predictions.rend()) {
+    return fmt::format(
+        "Fixes predicted up to {} s ahead without those in between err as much as predicted: the "
+        "noise of the IMU fits over that time, too.",
+        number_text(predictions.back().ahead_s, 0));
+  }
+  const bool above = outside->mean_nis > outside->mean_band.high;
+  return fmt::format(
+      "Fixes predicted {} s ahead without those in between err {} than predicted (mean NIS {}, "
+      "band {}): the noise of the IMU is set too {} for outages, whatever the innovations say.",
+      number_text(outside->ahead_s, 0), above ? "more" : "less",
+      significant_text(outside->mean_nis), band_text(outside->mean_band),
+      above ? "small" : "large");
+}
+
+std::vector<std::string> prediction_row(const PredictionConsistency& p) {
+  return {number_text(p.ahead_s, 0) + " s", significant_text(p.mean_nis), band_text(p.mean_band),
+          number_text(static_cast<double>(p.samples), 0)};
+}
+
+Table prediction_table(const std::vector<PredictionConsistency>& predictions) {
+  Table table;
+  table.title = "Predictions of fixes, none used in between";
+  table.header = {"Ahead", "Mean NIS", "95 % band of the mean", "Samples"};
+  for (const PredictionConsistency& p : predictions) table.rows.push_back(prediction_row(p));
+  table.note =
+      "Now and then a copy of the estimator drives on without fixes; those that come later are "
+      "compared with its prediction by its covariance. A mean that leaves its band as the time "
+      "grows tells a noise of the IMU that fits only at the rate of the fixes.";
+  return table;
+}
+
 std::vector<std::string> square_row(const std::string& name, const SquareConsistency& squares) {
   return {name,
           significant_text(squares.mean),
@@ -457,6 +494,10 @@ Section consistency_section(const RunData& data, const std::string& subtitle) {
   const std::string against_reference = nees_verdict(c);
   if (!against_reference.empty()) section.paragraphs.push_back(against_reference);
   if (c.nis.samples > 0 || c.position_nees) section.tables.push_back(square_table(c));
+  if (!c.predictions.empty()) {
+    section.paragraphs.push_back(prediction_verdict(c.predictions));
+    section.tables.push_back(prediction_table(c.predictions));
+  }
   if (c.innovations[0].samples > 0) section.tables.push_back(residual_table(c));
   for (const std::optional<Figure>& figure :
        {nis_figure(data, c, subtitle), whiteness_figure(c, subtitle),

@@ -139,6 +139,7 @@ class DemoDriver {
     c.autocorrelation = {2000, kStep, 0.044, {}, 0.05};
     for (int k = 0; k < 40; ++k)
       c.autocorrelation.lag.push_back({0.03, -0.02, k == 3 ? 0.06 : 0.01});
+    c.predictions = {{5, 4, 3.1, {1.5, 5.0}}, {15, 4, 2.7, {1.5, 5.0}}, {30, 4, 3.4, {1.5, 5.0}}};
     if (run_.with_reference) c.position_nees = SquareConsistency{2400, 120, 3.2, {2.6, 3.5}, 0.93};
     return c;
   }

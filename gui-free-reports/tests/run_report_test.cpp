@@ -246,6 +246,25 @@ TEST(Consistency, WordsFollowTheNumbers) {
   EXPECT_NE(words(2.2, 0, 0.2).find("coloured"), std::string::npos);
 }
 
+TEST(Consistency, WordsOnPredictionsNameTheLongestHorizonOutsideItsBand) {
+  const auto section = [](double after_15, double after_30) {
+    RunReport report(kLabels, Mounting{});
+    Consistency c;
+    c.predictions = {
+        {5, 10, 3, {1.7, 4.7}}, {15, 10, after_15, {1.7, 4.7}}, {30, 10, after_30, {1.7, 4.7}}};
+    report.consistency(c);
+    return section_of(report.page(), "Consistency");
+  };
+  const auto words = [&](double after_15, double after_30) {
+    return section(after_15, after_30).paragraphs.at(0);
+  };
+  EXPECT_NE(words(3, 3).find("up to 30 s ahead"), std::string::npos);
+  EXPECT_NE(words(9, 3).find("15 s ahead without those in between err more"), std::string::npos);
+  EXPECT_NE(words(9, 40).find("30 s ahead without those in between err more"), std::string::npos);
+  EXPECT_NE(words(3, 1).find("30 s ahead without those in between err less"), std::string::npos);
+  EXPECT_EQ(section(3, 3).tables.at(0).rows.size(), 3U);
+}
+
 TEST(Consistency, WordsOnTheReference) {
   const auto words = [](double position, double velocity) {
     RunReport report(kLabels, Mounting{});

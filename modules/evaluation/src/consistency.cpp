@@ -206,6 +206,16 @@ void ConsistencyCollector::fix(const FixResult& fix) {
   }
 }
 
+void ConsistencyCollector::prediction(const PredictionResult& prediction) {
+  if (prediction.t_ns < from_ns_) return;
+  const std::optional<Eigen::Vector3d> z =
+      whitened(prediction.innovation_n, prediction.innovation_covariance);
+  if (!z) return;
+  PredictionSum& sum = predictions_[prediction.ahead_s];
+  ++sum.samples;
+  sum.sum += z->squaredNorm();
+}
+
 void ConsistencyCollector::error(NormalizedKind kind, int64_t t_ns, const Eigen::Vector3d& error,
                                  const Eigen::Matrix3d& covariance) {
   const std::optional<Eigen::Vector3d> z = whitened(error, covariance);
@@ -257,6 +267,15 @@ std::optional<SquareConsistency> ConsistencyCollector::nees(NormalizedKind kind)
   return consistency(squares);
 }
 
+std::vector<PredictionConsistency> ConsistencyCollector::predictions() const {
+  std::vector<PredictionConsistency> result;
+  for (const auto& [ahead_s, p] : predictions_) {
+    const auto samples = static_cast<double>(p.samples);
+    result.push_back({ahead_s, p.samples, p.sum / samples, mean_nees_band(kComponents, samples)});
+  }
+  return result;
+}
+
 ResidualAutocorrelation ConsistencyCollector::autocorrelation() const {
   ResidualAutocorrelation a;
   a.samples = autocorrelation_.samples();
@@ -279,6 +298,7 @@ Consistency ConsistencyCollector::result() const {
     c.innovations[axis] = residuals_[axis].statistics();
   }
   c.autocorrelation = autocorrelation();
+  c.predictions = predictions();
   c.position_nees = nees(NormalizedKind::position);
   c.velocity_nees = nees(NormalizedKind::velocity);
   c.attitude_nees = nees(NormalizedKind::attitude);

@@ -98,6 +98,10 @@ void RunMetricsCollector::add_rejected(const FixResult& fix) {
   rejected_nis_sum_ += *nis;
 }
 
+void RunMetricsCollector::prediction(const PredictionResult& prediction) {
+  consistency_.prediction(prediction);
+}
+
 void RunMetricsCollector::reference_error(const Epoch& epoch, const ReferenceError& error) {
   const auto covariance = [&epoch](int offset) -> Eigen::Matrix3d {
     return epoch.covariance.block<3, 3>(offset, offset);

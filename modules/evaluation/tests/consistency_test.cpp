@@ -277,11 +277,36 @@ TEST(Consistency, StatisticsLeaveOutWhatComesBefore) {
   EXPECT_NEAR(c.velocity_nees->mean, 3, 1e-12);
 }
 
+/// Chi-square of 30 degrees of freedom at 2.5 and 97.5 %, from tables.
+TEST(Consistency, PredictionsArePooledByTheirHorizon) {
+  ConsistencyCollector collector(nanoseconds(10));
+  for (int t = 9; t < 20; ++t) {
+    PredictionResult prediction;
+    prediction.t_ns = nanoseconds(t);
+    prediction.innovation_covariance = 4 * Eigen::Matrix3d::Identity();
+    for (const double ahead_s : {30.0, 5.0}) {
+      prediction.ahead_s = ahead_s;
+      prediction.innovation_n = {ahead_s, 0, 2};
+      collector.prediction(prediction);
+    }
+  }
+  const std::vector<PredictionConsistency> predictions = collector.result().predictions;
+  ASSERT_EQ(predictions.size(), 2u);
+  EXPECT_EQ(predictions[0].ahead_s, 5);
+  EXPECT_EQ(predictions[0].samples, 10) << "from the start of the statistics on";
+  EXPECT_NEAR(predictions[0].mean_nis, 29.0 / 4, 1e-12);
+  EXPECT_NEAR(predictions[0].mean_band.low, 16.791 / 10, 1e-4);
+  EXPECT_NEAR(predictions[0].mean_band.high, 46.979 / 10, 1e-4);
+  EXPECT_EQ(predictions[1].ahead_s, 30);
+  EXPECT_NEAR(predictions[1].mean_nis, 904.0 / 4, 1e-12);
+}
+
 TEST(Consistency, OfNothing) {
   const Consistency c = ConsistencyCollector().result();
   EXPECT_EQ(c.nis.samples, 0);
   EXPECT_TRUE(c.autocorrelation.lag.empty());
   EXPECT_FALSE(c.attitude_nees);
+  EXPECT_TRUE(c.predictions.empty());
   EXPECT_NEAR(c.single_band.high, 9.348404, 1e-6);  // tables
 }
 

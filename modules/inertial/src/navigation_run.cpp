@@ -22,6 +22,7 @@
 #include "imu_hole.h"
 #include "known_biases.h"
 #include "plausibility.h"
+#include "prediction_probe.h"
 #include "sound_epoch.h"
 
 namespace foucault {
@@ -108,7 +109,9 @@ NavigationRun::NavigationRun(std::unique_ptr<Navigator> navigator, Aligner align
       fix_guard_(std::make_unique<FixGuard>()),
       plausibility_(std::make_unique<Plausibility>()),
       screen_(std::make_unique<FixScreen>()),
-      judge_(std::make_unique<FixJudge>(options.gnss)) {}
+      judge_(std::make_unique<FixJudge>(options.gnss)) {
+  if (sink.wants_predictions()) probe_ = std::make_unique<PredictionProbe>();
+}
 
 void NavigationRun::process(const Measurement& measurement) {
   if (const auto* increment = std::get_if<ImuIncrement>(&measurement)) {
@@ -276,6 +279,7 @@ void NavigationRun::start(const Epoch& aligned) {
   last_node_ns_ = initial.t_ns;
   judge_->start(initial.t_ns);
   last_used_ns_ = initial.t_ns;
+  if (probe_) probe_->restart();
   navigator_->start(initial);
   emit_epoch();
 
@@ -454,6 +458,7 @@ bool NavigationRun::advance(const ImuIncrement& increment) {
 
 void NavigationRun::propagate(const ImuIncrement& increment) {
   navigator_->propagate(increment);
+  if (probe_) probe_->propagate(increment);
   time_ns_ = increment.t_end_ns;
 }
 
@@ -622,6 +627,7 @@ FixVerdict NavigationRun::carry_out(const FixDecision& decision, const GnssFix& 
       break;
   }
   use(fix, result);
+  predict_ahead(fix);
   return FixVerdict::used;
 }
 
@@ -630,6 +636,12 @@ void NavigationRun::use(const GnssFix& fix, FixResult& result) {
   remember_fix_time();
   const Epoch epoch = navigator_->epoch();
   result.postfit_n = difference_n(fix.antenna, antenna_of(epoch, fix.p_b_a));
+}
+
+void NavigationRun::predict_ahead(const GnssFix& fix) {
+  if (!probe_) return;
+  const std::optional<PredictionResult> prediction = probe_->meet(fix, *navigator_);
+  if (prediction) sink_.prediction(*prediction);
 }
 
 void NavigationRun::remember_fix_time() {

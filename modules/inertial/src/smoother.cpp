@@ -99,30 +99,29 @@ void Smoother::Keeper::fix(const FixResult& result) {
 
 void Smoother::Keeper::notice(const Notice& notice) { kept_.emplace_back(notice); }
 
-void Smoother::Keeper::give_out(Sink& sink) {
+void Smoother::Keeper::give_out() {
   recording_.mark();  // so that every epoch has a node after it
   const StageTimer timer(Stage::smooth);
   const std::vector<SmoothedEpoch> nodes = recording_.smoothed();
   throw_if_unsound(nodes);
   const auto give = Overloaded{
-      [&](const NodeEpoch& e) { sink.epoch(nodes[e.node].epoch); },
+      [&](const NodeEpoch& e) { sink_.epoch(nodes[e.node].epoch); },
       [&](const BetweenEpoch& e) {
-        sink.epoch(between(nodes[e.node], nodes[e.node + 1], e.forward));
+        sink_.epoch(between(nodes[e.node], nodes[e.node + 1], e.forward));
       },
-      [&](const NodeFix& f) { sink.fix(with_postfit(f.result, nodes[f.node])); },
-      [&](const FixResult& f) { sink.fix(f); }, [&](const Notice& n) { sink.notice(n); }};
+      [&](const NodeFix& f) { sink_.fix(with_postfit(f.result, nodes[f.node])); },
+      [&](const FixResult& f) { sink_.fix(f); }, [&](const Notice& n) { sink_.notice(n); }};
   for (const auto& kept : kept_) std::visit(give, kept);
 }
 
 Smoother::Smoother(std::unique_ptr<Navigator> navigator, Recording& recording, Aligner aligner,
                    const NavigationRunOptions& options, Sink& sink)
-    : keeper_(recording, options.rate),
-      run_(std::move(navigator), std::move(aligner), options, keeper_),
-      sink_(sink) {}
+    : keeper_(recording, options.rate, sink),
+      run_(std::move(navigator), std::move(aligner), options, keeper_) {}
 
 void Smoother::finish() {
   run_.finish();
-  keeper_.give_out(sink_);
+  keeper_.give_out();
 }
 
 }  // namespace foucault

@@ -94,6 +94,10 @@ struct RecordingSink : Sink {
   std::vector<double> epochs_ms;
   std::vector<FixResult> fixes;
   std::vector<Notice> notices;
+  std::vector<PredictionResult> predictions;
+  bool predict = false;
+  bool wants_predictions() const override { return predict; }
+  void prediction(const PredictionResult& p) override { predictions.push_back(p); }
   void epoch(const Epoch& e) override { epochs_ms.push_back(ms_of(e.t_ns)); }
   void fix(const FixResult& f) override { fixes.push_back(f); }
   void notice(const Notice& n) override { notices.push_back(n); }
@@ -266,6 +270,33 @@ TEST_F(NavigationRunTest, WaitsForAFixWhoseStampJitters) {
   // The first hold is due at 2010, when fixes are known to come a second apart (exactly so far).
   EXPECT_THAT(log_.calls,
               ElementsAre("update@1010", "hold@2010", "update@2012", "update@3010", "update@4011"));
+}
+
+/// Fixes every second, that at 71 s 1 km away: no prediction of what is rejected.
+TEST_F(NavigationRunTest, PredictsUsedFixesAheadIfThatIsWanted) {
+  for (const bool wanted : {true, false}) {
+    run_.reset();
+    log_ = Log();
+    sink_ = RecordingSink();
+    sink_.predict = wanted;
+    align();
+    for (int t = 1; t <= 110; ++t) {
+      feed_imu(1000 * t - 990, 1000 * t, 990);
+      run().process(fix_at(1000 * t + 10, Vector3d(t == 71 ? 1000 : 0, 0, 0.1)));
+      feed_imu(1000 * t, 1000 * t + 10);
+    }
+    std::vector<double> horizons;
+    for (const PredictionResult& p : sink_.predictions) {
+      horizons.push_back(p.ahead_s);
+      EXPECT_NEAR(p.innovation_n.norm(), 0.1, 1e-6);
+      EXPECT_GT(p.innovation_covariance(0, 0), 0);
+    }
+    if (wanted) {
+      EXPECT_THAT(horizons, ElementsAre(5, 15, 30));
+    } else {
+      EXPECT_THAT(horizons, ElementsAre());
+    }
+  }
 }
 
 TEST_F(NavigationRunTest, RequestsAreNoNodes) {

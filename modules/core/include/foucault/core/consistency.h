@@ -57,6 +57,15 @@ struct StretchConsistency {
   static constexpr double kTooLarge = 3;
 };
 
+/// Fixes predicted some time ahead, see PredictionResult. Predictions do not overlap and count as
+/// independent.
+struct PredictionConsistency {
+  double ahead_s = 0;
+  int64_t samples = 0;
+  double mean_nis = 0;  ///< 3 if the covariances are right
+  Band mean_band;       ///< holds it with 95 % if they are
+};
+
 /// Counts of bins of equal width over [-kLimit, kLimit).
 struct ResidualHistogram {
   static constexpr double kLimit = 5;
@@ -95,6 +104,7 @@ struct Consistency {
   StretchConsistency stretches;
   std::array<ResidualStatistics, 3> innovations;  ///< whitened; north, east, down
   ResidualAutocorrelation autocorrelation;
+  std::vector<PredictionConsistency> predictions;  ///< in order of their horizons
   std::optional<SquareConsistency> position_nees, velocity_nees, attitude_nees;
 };
 

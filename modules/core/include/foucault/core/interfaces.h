@@ -33,6 +33,9 @@ class Sink {
   virtual void epoch(const Epoch&) {}
   virtual void fix(const FixResult&) {}
   virtual void notice(const Notice&) {}
+  /// Predictions cost time and come only if they are wanted, from the beginning on.
+  virtual bool wants_predictions() const { return false; }
+  virtual void prediction(const PredictionResult&) {}
 };
 
 /// Turns measurements into epochs, which go to the sink it was built with.

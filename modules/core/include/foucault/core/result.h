@@ -38,6 +38,14 @@ struct FixResult {
   Eigen::Vector3d postfit_n = Eigen::Vector3d::Zero();  ///< fix minus estimate after use [m]
 };
 
+/// A used fix against its prediction from a state some time before, without the fixes in between.
+struct PredictionResult {
+  int64_t t_ns = 0;
+  double ahead_s = 0;  ///< horizon; the fix is up to a fifth later
+  Eigen::Vector3d innovation_n = Eigen::Vector3d::Zero();           ///< north, east, down [m]
+  Eigen::Matrix3d innovation_covariance = Eigen::Matrix3d::Zero();  ///< [m^2], of the innovation
+};
+
 enum class NoticeKind { aligned, imu_gap, realigned, fix_rejected, skipped };
 
 /// Something that happened on the way and that a user should know.

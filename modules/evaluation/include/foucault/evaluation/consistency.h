@@ -6,6 +6,7 @@
 #include <deque>
 #include <functional>
 #include <limits>
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -108,6 +109,7 @@ class ConsistencyCollector {
                                 Callback callback = {});
 
   void fix(const FixResult& fix);
+  void prediction(const PredictionResult& prediction);
   /// Position and velocity: NED and `kind`'s block of the covariance; attitude: in v.
   void error(NormalizedKind kind, int64_t t_ns, const Eigen::Vector3d& error,
              const Eigen::Matrix3d& covariance);
@@ -120,17 +122,24 @@ class ConsistencyCollector {
     int64_t inside = 0;
   };
 
+  struct PredictionSum {
+    int64_t samples = 0;
+    double sum = 0;
+  };
+
   void add(const NormalizedSquare& square);
   std::optional<double> running_mean(double square);
   SquareConsistency consistency(const Squares& squares) const;
   std::optional<SquareConsistency> nees(NormalizedKind kind) const;
+  std::vector<PredictionConsistency> predictions() const;
   ResidualAutocorrelation autocorrelation() const;
   void watch_interval(int64_t t_ns);
 
   int64_t from_ns_;
   Callback callback_;
   Band single_band_;
-  std::array<Squares, 4> squares_;  ///< by kind
+  std::array<Squares, 4> squares_;               ///< by kind
+  std::map<double, PredictionSum> predictions_;  ///< by horizon [s]
   std::array<ResidualCollector, 3> residuals_;
   StreamingAutocorrelation autocorrelation_;
   NormalizedSquare largest_nis_;

@@ -72,6 +72,7 @@ class RunMetricsCollector : public Sink {
 
   void epoch(const Epoch& epoch) override;
   void fix(const FixResult& fix) override;
+  void prediction(const PredictionResult& prediction) override;
   void reference_error(const Epoch& epoch, const ReferenceError& error);
 
   RunMetrics metrics() const;

@@ -46,6 +46,7 @@ class FixScreen;
 class ImuGuard;
 class Plausibility;
 struct FixDecision;
+class PredictionProbe;
 struct ImuHole;
 
 enum class EpochRate { epochs, imu };
@@ -79,6 +80,7 @@ struct NavigationRunOptions {
 /// - Increments that are not finite, or do not come after the one before, are left out, counted and
 ///   named; samples of a clipped or stuck gyroscope are a hole, those of such an
 ///   accelerometer get more noise.
+/// - If the sink wants predictions, fixes are now and then predicted 5, 15 and 30 s ahead.
 /// - Fixes up to the alignment's start stamp are not used again and have no FixResult.
 /// - After a new alignment the biases known before it still count, with doubled sigmas.
 /// process() throws DataError for what makes a recording useless: units of the IMU, turned axes,
@@ -170,6 +172,7 @@ class NavigationRun : public Estimator {
   FixVerdict carry_out(const FixDecision& decision, const GnssFix& fix,
                        const Innovation& innovation, FixResult& result);
   void use(const GnssFix& fix, FixResult& result);
+  void predict_ahead(const GnssFix& fix);
   void remember_fix_time();
   void hold();
   void emit_epoch();
@@ -202,6 +205,7 @@ class NavigationRun : public Estimator {
   std::deque<Measurement> beyond_doubt_;         ///< what came after it
   std::multimap<int64_t, FixDecision> decided_;  ///< of fixes to come, by stamp
   int64_t last_used_ns_ = 0;                     ///< fix, or start
+  std::unique_ptr<PredictionProbe> probe_;       ///< if predictions are wanted
   std::optional<GnssFix> last_fix_seen_;
   std::optional<Epoch> before_hole_;  ///< the last state, while aligning anew
   UsualInterval usual_interval_;

@@ -60,12 +60,16 @@ class Smoother : public Estimator {
   /// Keeps what the forward run gives out, in its order.
   class Keeper : public Sink {
    public:
-    Keeper(Recording& recording, EpochRate rate) : recording_(recording), rate_(rate) {}
+    Keeper(Recording& recording, EpochRate rate, Sink& sink)
+        : recording_(recording), rate_(rate), sink_(sink) {}
     void epoch(const Epoch& epoch) override;
     void fix(const FixResult& result) override;
     void notice(const Notice& notice) override;
+    bool wants_predictions() const override { return sink_.wants_predictions(); }
+    /// Those of the forward run; they do not wait.
+    void prediction(const PredictionResult& result) override { sink_.prediction(result); }
     /// Smooths, once the forward run is over.
-    void give_out(Sink& sink);
+    void give_out();
 
    private:
     struct NodeEpoch {
@@ -82,12 +86,12 @@ class Smoother : public Estimator {
 
     Recording& recording_;
     EpochRate rate_;
+    Sink& sink_;
     std::vector<std::variant<NodeEpoch, BetweenEpoch, NodeFix, FixResult, Notice>> kept_;
   };
 
   Keeper keeper_;
   NavigationRun run_;
-  Sink& sink_;
 };
 
 }  // namespace foucault
