@@ -225,7 +225,7 @@ void NavigationRun::leave_out(const GnssFix& fix, FixVerdict verdict) {
 
 // Alignment -------------------------------------------------------------------------------------
 
-bool NavigationRun::may_align(const GnssFix& fix) const {
+bool NavigationRun::is_usable(const GnssFix& fix) const {
   return is_position(fix.antenna) &&
          covariance_is_valid(weighted(fix, options_.gnss).position_covariance) &&
          fix.quality >= quality_from(options_.gnss.min_quality);
@@ -260,7 +260,7 @@ void NavigationRun::show_aligner(const Measurement& measurement, bool plausible)
   const StageTimer timer(Stage::align);
   if (const auto* increment = std::get_if<ImuIncrement>(&measurement)) aligner_.add(*increment);
   if (const auto* fix = std::get_if<GnssFix>(&measurement)) {
-    if (plausible && may_align(*fix)) aligner_.add(weighted(*fix, options_.gnss));
+    if (plausible && is_usable(*fix)) aligner_.add(weighted(*fix, options_.gnss));
   }
 }
 
@@ -531,21 +531,16 @@ void NavigationRun::handle_fix(const GnssFix& fix) {
     const Innovation innovation = navigator_->innovation(trusted);
     result.innovation_n = result.postfit_n = innovation.value_n;
     result.innovation_covariance = innovation.covariance;
-    if (!can_be_judged(trusted)) {
+    if (!is_usable(fix)) {
       result.verdict = FixVerdict::low_quality;
     } else {
       const std::optional<FixDecision> decision = decide(trusted, innovation);
       if (!decision) return doubt(fix, trusted, returns_after_outage(fix));
-      result.verdict = carry_out(*decision, trusted, innovation, result);
+      result.verdict = carry_out(*decision, trusted, result);
     }
   }
   if (result.verdict != FixVerdict::used) notice_first_rejection(fix, result.verdict);
   sink_.fix(result);
-}
-
-bool NavigationRun::can_be_judged(const GnssFix& trusted) const {
-  return position_is_valid(trusted.antenna) && covariance_is_valid(trusted.position_covariance) &&
-         trusted.quality >= quality_from(options_.gnss.min_quality);
 }
 
 /// None: it is in doubt.
@@ -577,8 +572,7 @@ void NavigationRun::doubt(const GnssFix& fix, const GnssFix& trusted, bool retur
 bool NavigationRun::show_doubt(const Measurement& measurement) {
   const auto* fix = std::get_if<GnssFix>(&measurement);
   if (!fix) return doubt_->add(measurement);
-  const GnssFix trusted = weighted(*fix, options_.gnss);
-  return can_be_judged(trusted) && doubt_->add(trusted);
+  return is_usable(*fix) && doubt_->add(weighted(*fix, options_.gnss));
 }
 
 std::optional<FixDecision> NavigationRun::decided_before(const GnssFix& fix) {
@@ -615,7 +609,7 @@ void NavigationRun::resolve_doubt() {
 }
 
 FixVerdict NavigationRun::carry_out(const FixDecision& decision, const GnssFix& fix,
-                                    const Innovation& innovation, FixResult& result) {
+                                    FixResult& result) {
   switch (decision.action) {
     case FixDecision::Action::leave_out:
       return FixVerdict::gated;

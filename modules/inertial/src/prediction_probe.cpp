@@ -25,7 +25,7 @@ std::optional<PredictionResult> PredictionProbe::meet(const GnssFix& fix,
   if (ahead_) result = compare(fix);
   if (!due_ns_) due_ns_ = fix.t_ns + nanoseconds(kSettlingS);
   if (!ahead_ && fix.t_ns >= *due_ns_) {
-    ahead_ = navigator.ahead();
+    ahead_ = navigator.ahead(1);
     begin_ns_ = fix.t_ns;
     horizon_ = 0;
     due_ns_ = fix.t_ns + nanoseconds(kPeriodS);

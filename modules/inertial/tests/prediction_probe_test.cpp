@@ -29,10 +29,9 @@ class Coasting : public Navigator {
   }
   void update(const GnssFix&) override { since_update_s_ = 0; }
   void loosen(const Matrix15d&) override {}
-  void inflate(double) override {}
   void hold() override {}
   Epoch epoch() const override { return {}; }
-  std::unique_ptr<Navigator> ahead() const override {
+  std::unique_ptr<Navigator> ahead(double) const override {
     ++copies;
     return std::make_unique<Coasting>(*this);
   }

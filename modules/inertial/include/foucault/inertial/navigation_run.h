@@ -67,10 +67,10 @@ struct NavigationRunOptions {
 ///   fixes after the hole tell how the vehicle turned in it, at most 3 s later; beyond max_gap_s
 ///   the run aligns again.
 /// - Fixes are gated by the chi-square test of their innovation (3 degrees of freedom), relative to
-///   the median of recent ones where that is above its expectation. If those that do not pass go
-///   on, it is found out whether they or the state are wrong, see src/fix_judge.h; neither a run of
-///   bad fixes nor a wrong state locks the other out for more than 90 s. After a hole, and from a
-///   fix better in quality than the last used, the gate is open for ten seconds.
+///   the median of recent ones where that is above its expectation. Where one does not pass, or is
+///   the first after an outage, what follows is held back until it shows whether the fixes or the
+///   state are wrong (src/fix_doubt.h), 90 s at most; epochs and fixes are given out that much
+///   later, as if it had been known at once. After a hole the gate is open for ten seconds.
 /// - Before the alignment, fixes that no vehicle can reach from their neighbours are left out.
 /// - Positions given again and again under new stamps count once (out_of_order).
 /// - Fixes that are no position, or that no vehicle reaches from the others, are left out, counted
@@ -139,7 +139,7 @@ class NavigationRun : public Estimator {
   void pass_on(const Measurement& measurement);
   bool is_repeated(const GnssFix& fix) const;
   void leave_out(const GnssFix& fix, FixVerdict verdict);
-  bool may_align(const GnssFix& fix) const;
+  bool is_usable(const GnssFix& fix) const;
   void align(const Measurement& measurement);
   void align_screened(const Measurement& measurement, bool plausible);
   void show_aligner(const Measurement& measurement, bool plausible);
@@ -167,10 +167,8 @@ class NavigationRun : public Estimator {
   void doubt(const GnssFix& fix, const GnssFix& trusted, bool returns);
   bool show_doubt(const Measurement& measurement);
   void look_beyond_doubt(const Measurement& measurement);
-  bool can_be_judged(const GnssFix& trusted) const;
   void resolve_doubt();
-  FixVerdict carry_out(const FixDecision& decision, const GnssFix& fix,
-                       const Innovation& innovation, FixResult& result);
+  FixVerdict carry_out(const FixDecision& decision, const GnssFix& fix, FixResult& result);
   void use(const GnssFix& fix, FixResult& result);
   void predict_ahead(const GnssFix& fix);
   void remember_fix_time();

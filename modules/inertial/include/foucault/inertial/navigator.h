@@ -37,9 +37,9 @@ class Navigator {
   /// semidefinite. What is estimated beside these fifteen keeps its values and correlations.
   virtual void loosen(const Matrix15d& added) = 0;
 
-  /// One that drives on from the present state by the same method, for trying out what follows, with
-  /// the sigmas of all that is estimated `scale` times what they are; correlations stay. This one is
-  /// not changed. The other leaves no nodes, and need not remember what came before.
+  /// One that drives on from the present state by the same method, for trying out what follows,
+  /// with the sigmas of all that is estimated `scale` times what they are; correlations stay. This
+  /// one is not changed. The other leaves no nodes, and need not remember what came before.
   virtual std::unique_ptr<Navigator> ahead(double scale) const = 0;
 
   /// No fix has come for node_interval: a factor graph adds a node here, a filter does nothing.
