@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -25,6 +26,7 @@ struct Drive {
   const char* scenario;
   ImuNoise noise;
   double outage_s;
+  double imu_rate_hz = 20;
 
   ScenarioOptions options() const {
     constexpr double kAfter = 60;
@@ -32,7 +34,7 @@ struct Drive {
     o.name = scenario;
     o.duration_s = kBefore + outage_s + kAfter;
     o.seed = 5;
-    o.imu_rate_hz = 20;
+    o.imu_rate_hz = imu_rate_hz;
     o.reference_rate_hz = 0;
     return o;
   }
@@ -160,6 +162,35 @@ std::vector<SmoothedEpoch> batch(const Drive& drive) {
                                        FgoOptions{}, PreintegrationModel::full, drive.noise));
 }
 
+double smallest_eigenvalue_in_sigmas(const Matrix15d& P) {
+  const Matrix15d scale = P.diagonal().cwiseSqrt().cwiseInverse().asDiagonal();
+  return Eigen::SelfAdjointEigenSolver<Matrix15d>(scale * P * scale, Eigen::EigenvaluesOnly)
+      .eigenvalues()
+      .minCoeff();
+}
+
+double nees(const Eigen::Vector3d& error, const Epoch& epoch) {
+  const Eigen::Matrix3d P = epoch.covariance.topLeftCorner<3, 3>();
+  return error.dot(P.llt().solve(error));
+}
+
+/// Half an hour, in which the filter's errors of 10 km are still linear.
+TEST(LongOutage, SmoothersAreSoundInTheMiddleOfIt) {
+  const Drive drive{"city", imu_preset("ADIS16465"), 1800};
+  constexpr double kNeesOfOneInAMillion = 30.7;  // chi-square of 3
+  const SimulatedSource source(drive.options(), drive.noise);
+  const std::vector<SmoothedEpoch> filtered = rts(drive);
+  const std::vector<SmoothedEpoch> optimized = batch(drive);
+  ASSERT_EQ(filtered.size(), optimized.size());
+  for (std::size_t k = 0; k < filtered.size(); ++k) {
+    for (const Epoch& epoch : {filtered[k].epoch, optimized[k].epoch}) {
+      EXPECT_GT(smallest_eigenvalue_in_sigmas(epoch.covariance), 1e-4) << k;
+      const Vector15d error = error_of(epoch, source.truth(epoch.t_ns));
+      EXPECT_LT(nees(error.head<3>(), epoch), kNeesOfOneInAMillion) << k;
+    }
+  }
+}
+
 ImuNoise with_constant_biases() {
   ImuNoise noise = imu_preset("ADIS16465");
   noise.gyro_bias_sigma = noise.accel_bias_sigma = 0;
@@ -184,7 +215,7 @@ INSTANTIATE_TEST_SUITE_P(Noises, ConstantBias,
                                            with_biases_of_a_century));
 
 TEST_P(ConstantBias, WindowAndFilterAgree) {
-  const Drive drive{"city", GetParam()(), 60};
+  const Drive drive{"city", GetParam()(), 60, 50};
   const Outcome ekf = run_filter(drive);
   const Outcome full = run_window(drive, PreintegrationModel::full);
   EXPECT_LT(relative_deviation(full.back.covariance, ekf.back.covariance), 0.005);
@@ -194,7 +225,7 @@ TEST_P(ConstantBias, WindowAndFilterAgree) {
 }
 
 TEST_P(ConstantBias, SmoothersAgree) {
-  const Drive drive{"city", GetParam()(), 60};
+  const Drive drive{"city", GetParam()(), 60, 50};
   const std::vector<SmoothedEpoch> filtered = rts(drive);
   const std::vector<SmoothedEpoch> optimized = batch(drive);
   ASSERT_EQ(filtered.size(), optimized.size());

@@ -12,6 +12,12 @@
 namespace foucault {
 namespace {
 
+/// The second order of gravity is 3 g (d / R)^2 or less: 7e-7 m/s^2.
+constexpr double kGravityIsLinear = 1000;  // [m]
+
+/// Forward runs that were off by tens of kilometres need two.
+constexpr int kRounds = 5;
+
 /// The chain with its factors.
 class BatchGraph {
  public:
@@ -35,18 +41,16 @@ class BatchGraph {
     for (std::size_t k = 0; k < x_.size(); ++k) x_[k] = problem.state(k);
   }
 
-  /// True if there were any.
-  bool reintegrate_moved_biases(const ImuNoise& noise, PreintegrationModel model) {
-    bool moved = false;
+  /// New factors where biases or places have left those of the first estimate. True if there were
+  /// any.
+  bool renew_factors(const ImuNoise& noise, PreintegrationModel model) {
+    bool renewed = false;
     for (std::size_t k = 0; k < chain_.intervals.size(); ++k) {
-      ImuInterval& interval = chain_.intervals[k];
-      const ImuBias& bias = x_[k].bias;
-      if (interval.increments.empty() || !bias_moved(interval.factor->preintegration(), bias))
-        continue;
-      reintegrate(interval, bias, noise, model);
-      moved = true;
+      const bool integrated = reintegrate_moved_bias(k, noise, model);
+      const bool placed = model == PreintegrationModel::full && move_earth(k);
+      renewed = renewed || integrated || placed;
     }
-    return moved;
+    return renewed;
   }
 
   const std::vector<NodeState>& states() const { return x_; }
@@ -66,6 +70,24 @@ class BatchGraph {
   }
 
  private:
+  bool reintegrate_moved_bias(std::size_t k, const ImuNoise& noise, PreintegrationModel model) {
+    ImuInterval& interval = chain_.intervals[k];
+    if (interval.increments.empty()) return false;
+    if (!bias_moved(interval.factor->preintegration(), x_[k].bias)) return false;
+    reintegrate(interval, x_[k].bias, noise, model);
+    return true;
+  }
+
+  /// Gravity is linear about the place where the forward run was.
+  bool move_earth(std::size_t k) {
+    std::unique_ptr<PreintegrationFactor>& factor = chain_.intervals[k].factor;
+    const Eigen::Vector3d& p_w = x_[k].p_w_b;
+    if ((p_w - factor->earth().p_ref).norm() < kGravityIsLinear) return false;
+    factor = std::make_unique<PreintegrationFactor>(
+        factor->preintegration(), earth_model(PreintegrationModel::full, chain_.frame, p_w));
+    return true;
+  }
+
   BatchChain& chain_;
   const FgoOptions& options_;
   std::unique_ptr<ceres::LossFunction> loss_;
@@ -119,7 +141,9 @@ BatchSolution solve(BatchChain& chain, const FgoOptions& options, Preintegration
   const StageTimer timer(Stage::solve);
   BatchGraph graph(chain, options);
   graph.optimize();
-  if (graph.reintegrate_moved_biases(noise, model)) graph.optimize();
+  for (int round = 0; round < kRounds && graph.renew_factors(noise, model); ++round) {
+    graph.optimize();
+  }
   return {graph.states(), covariances(graph)};
 }
 
@@ -137,6 +161,7 @@ void BatchRecorder::start(const Epoch& initial) {
   if (!frame_) frame_.emplace(initial.position);
   integrator_.reset();
   BatchChain& chain = chains_.emplace_back();
+  chain.frame = *frame_;
   chain.prior = prior_from_covariance(to_node(initial, *frame_, model_), covariance_w(initial));
   add_node(initial);
 }

@@ -31,7 +31,8 @@ struct BatchNode {
   std::vector<LocalFix> fixes;
 };
 struct BatchChain {
-  SquareRootPrior prior;  ///< on the first node
+  LocalFrame frame{Geodetic{}};  ///< w
+  SquareRootPrior prior;         ///< on the first node
   std::vector<BatchNode> nodes;
   std::vector<ImuInterval> intervals;
 };
@@ -42,7 +43,8 @@ struct BatchSolution {
 };
 
 /// Minimizes the cost by Ceres from the nodes' first estimates; intervals whose bias has moved are
-/// integrated again if their increments were kept. Time and memory are linear in the nodes: the
+/// integrated again if their increments were kept, and in `full` gravity is that of where the
+/// nodes come to lie. Time and memory are linear in the nodes: the
 /// covariances come from eliminating the chain from both ends, not from inverting it.
 /// Throws std::runtime_error if the problem cannot be solved.
 BatchSolution solve(BatchChain& chain, const FgoOptions& options, PreintegrationModel model,
