@@ -37,10 +37,11 @@ Json inside_json(const InsideSigma& inside) {
 
 Json gnss_json(const GnssMetrics& gnss) {
   const bool exists = gnss.samples > 0;
-  const int64_t fixes = gnss.used + gnss.rejected;
+  const int64_t fixes = gnss.used + gnss.rejected + gnss.corrected;
   const bool compared = gnss.rejected_samples > 0;
   return {{"used", gnss.used},
           {"rejected", gnss.rejected},
+          {"corrected", gnss.corrected},
           {"rejected_share", fixes > 0 ? Json(ratio(gnss.rejected, fixes)) : Json(nullptr)},
           {"rejected_innovation_rms_m", north_east_down(gnss.rejected_innovation_rms_n, compared)},
           {"rejected_mean_nis", compared ? Json(gnss.rejected_mean_nis) : Json(nullptr)},

@@ -80,6 +80,10 @@ void RunMetricsCollector::epoch(const Epoch& epoch) {
 
 void RunMetricsCollector::fix(const FixResult& fix) {
   consistency_.fix(fix);
+  if (fix.verdict == FixVerdict::corrected) {
+    ++corrected_;
+    return;
+  }
   if (fix.verdict != FixVerdict::used) {
     ++rejected_;
     add_rejected(fix);
@@ -156,6 +160,7 @@ RunMetrics RunMetricsCollector::metrics() const {
   m.duration_s = seconds_between(states_.begin_ns, last_ns_);
   m.gnss.used = used_;
   m.gnss.rejected = rejected_;
+  m.gnss.corrected = corrected_;
   m.gnss.samples = innovation_.samples;
   m.gnss.innovation_rms_n = innovation_.mean().cwiseSqrt();
   m.gnss.postfit_rms_n = postfit_.mean().cwiseSqrt();

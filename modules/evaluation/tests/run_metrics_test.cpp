@@ -57,9 +57,13 @@ TEST(RunMetrics, FixesByHand) {
   FixResult gated = used_fix(3, {1000, 0, 0}, {1000, 0, 0});
   gated.verdict = FixVerdict::gated;
   collector.fix(gated);  // counts, but is in no mean
+  FixResult corrected = gated;
+  corrected.verdict = FixVerdict::corrected;
+  collector.fix(corrected);  // neither
   const GnssMetrics m = collector.metrics().gnss;
   EXPECT_EQ(m.used, 2);
   EXPECT_EQ(m.rejected, 1);
+  EXPECT_EQ(m.corrected, 1);
   EXPECT_EQ(m.samples, 2);
   EXPECT_NEAR(m.innovation_rms_n.x(), std::sqrt(12.5), 1e-14);
   EXPECT_NEAR(m.innovation_rms_n.y(), std::sqrt(2), 1e-14);

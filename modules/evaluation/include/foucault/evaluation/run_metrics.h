@@ -17,6 +17,7 @@ namespace foucault {
 struct GnssMetrics {
   int64_t used = 0;
   int64_t rejected = 0;                                        ///< for whatever reason
+  int64_t corrected = 0;                                       ///< used less an error that lasts
   int64_t samples = 0;                                         ///< used fixes behind the statistics
   Eigen::Vector3d innovation_rms_n = Eigen::Vector3d::Zero();  ///< north, east, down [m]
   Eigen::Vector3d postfit_rms_n = Eigen::Vector3d::Zero();     ///< [m]
@@ -104,6 +105,7 @@ class RunMetricsCollector : public Sink {
   int64_t last_ns_ = 0;
   int64_t used_ = 0;
   int64_t rejected_ = 0;
+  int64_t corrected_ = 0;
   Squares innovation_;
   Squares postfit_;
   Squares rejected_innovation_;
