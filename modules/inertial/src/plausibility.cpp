@@ -60,10 +60,11 @@ void Plausibility::look_at_turns(int64_t t_ns) {
   if (matcher_.samples() < samples_looked_at_ + kSamplesBetweenLooks) return;
   samples_looked_at_ = matcher_.samples();
   const std::optional<TurnMatch> match = matcher_.best();
-  if (!match || match->samples < kSamplesNeeded || match->turned < kTurnNeeded) return;
-  if (const std::optional<std::string> wrong = gross_mismatch(*match, t_ns)) {
-    throw DataError(*wrong);
-  }
+  if (!match) return;
+  const bool clocks_show = match->samples >= kSamplesNeeded && match->turned >= kTurnNeeded;
+  const std::optional<std::string> wrong =
+      clocks_show ? gross_mismatch(*match, t_ns) : wrong_rates(*match);
+  if (wrong) throw DataError(*wrong);
 }
 
 void Plausibility::add(const ImuIncrement& increment) {

@@ -24,6 +24,7 @@ constexpr double kLongestCourse = 4;      // [s]
 constexpr double kSlowest = 3;            // [m/s]
 constexpr double kLongestChange = 6;      // [s] between courses
 constexpr double kFastestTurn = 1;        // [rad/s]; faster are outliers of the fixes
+constexpr double kAgree = 0.9;            // correlation
 constexpr double kGentle = 2;             // [m/s^2], speed times turn rate
 constexpr double kEnoughTurn = 1.5708;    // [rad]
 constexpr int64_t kEnoughSamples = 20;
@@ -32,8 +33,8 @@ constexpr double kDegree = 0.0174532925199432958;
 /// Data sheets of the cheapest gyroscopes promise 3 % (MPU-6050); what slip, roads and the bias add
 /// is in the sigma or stays below as much again. Twenty are no gyroscope's.
 bool scale_is_wrong(const MeasuredFactor& factor) {
-  constexpr double kLargestError = 0.2, kSigmas = 5;
-  return std::abs(factor.value - 1) > kLargestError + kSigmas * factor.sigma;
+  constexpr double kLargestError = 0.2, kSure = 5;  // sigmas
+  return std::abs(factor.value - 1) > kLargestError + kSure * factor.sigma;
 }
 
 }  // namespace
@@ -192,15 +193,8 @@ std::optional<TurnMatch> TurnMatcher::best() const {
   return match;
 }
 
-std::optional<std::string> gross_mismatch(const TurnMatch& match, int64_t t_ns) {
-  constexpr double kAgree = 0.9;
-  constexpr double kGrossOffset = 1;  // [s]
-  if (std::abs(match.correlation) < kAgree) return std::nullopt;
-  if (match.correlation < 0) {
-    return std::string(
-        "the gyroscopes turn against the course of GNSS; their axes are wrong, correct the axes of "
-        "the import (imu.axes of the mapping, or the sensorPose)");
-  }
+std::optional<std::string> wrong_rates(const TurnMatch& match) {
+  if (match.correlation < kAgree) return std::nullopt;
   const double in_degrees = match.slope * kDegree;
   if (std::abs(in_degrees - 1) < 0.2) {
     return std::string("angular rates are in deg/s, not rad/s; name the unit in the import");
@@ -216,6 +210,18 @@ std::optional<std::string> gross_mismatch(const TurnMatch& match, int64_t t_ns) 
         "gyroscope's scale factor is so far off; correct unit or scale in the import",
         match.gyro_factor->value, match.gyro_factor->sigma);
   }
+  return std::nullopt;
+}
+
+std::optional<std::string> gross_mismatch(const TurnMatch& match, int64_t t_ns) {
+  constexpr double kGrossOffset = 1;  // [s]
+  if (std::abs(match.correlation) < kAgree) return std::nullopt;
+  if (match.correlation < 0) {
+    return std::string(
+        "the gyroscopes turn against the course of GNSS; their axes are wrong, correct the axes of "
+        "the import (imu.axes of the mapping, or the sensorPose)");
+  }
+  if (const std::optional<std::string> wrong = wrong_rates(match)) return wrong;
   constexpr double kClearly = 0.25;
   if (std::abs(match.offset_s) < kGrossOffset || match.residual_share > kClearly) {
     return std::nullopt;

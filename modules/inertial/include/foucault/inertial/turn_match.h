@@ -105,4 +105,7 @@ class TurnMatcher {
 /// seconds.
 std::optional<std::string> gross_mismatch(const TurnMatch& match, int64_t t_ns);
 
+/// The part of it that is certain as soon as there is a TurnMatch: unit or scale of angular rates.
+std::optional<std::string> wrong_rates(const TurnMatch& match);
+
 }  // namespace foucault
