@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <optional>
 #include <utility>
 
@@ -66,8 +68,18 @@ std::optional<Finding> on_count(const SquareConsistency& nis) {
                   nis.samples, kFewestFixes)};
 }
 
-std::string wrong_size(const Consistency& c, int64_t start_ns) {
-  const double size = size_of(c.nis.mean);
+/// Of the first two components. Clocks, heading and scale that are wrong show in these alone; a
+/// vertical that fits must not dilute them.
+double horizontal_size(const Consistency& c) {
+  double sum = 0;
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    const ResidualStatistics& s = c.innovations[axis];
+    sum += s.mean * s.mean + s.sigma * s.sigma;
+  }
+  return std::sqrt(sum / 2);
+}
+
+std::string wrong_size(const Consistency& c, double size, int64_t start_ns) {
   if (size < 1) return too_small(size);
   const double samples = static_cast<double>(c.nis.samples);
   const double others = size_of((samples * c.nis.mean - c.largest_nis.value) / (samples - 1));
@@ -77,10 +89,12 @@ std::string wrong_size(const Consistency& c, int64_t start_ns) {
 
 std::optional<Finding> on_size(const Consistency& c, int64_t start_ns) {
   if (c.nis.samples < kFewestFixes) return std::nullopt;
-  const double size = size_of(c.nis.mean);
+  double size = size_of(c.nis.mean);
+  const double horizontal = horizontal_size(c);
+  if (horizontal > kBelievable.high) size = std::max(size, horizontal);
   if (kUsual.holds(size)) return std::nullopt;
   if (mean_nees_band(3, c.nis.effective_samples, kChance).holds(c.nis.mean)) return std::nullopt;
-  return Finding{!kBelievable.holds(size), wrong_size(c, start_ns)};
+  return Finding{!kBelievable.holds(size), wrong_size(c, size, start_ns)};
 }
 
 /// Where to look. They do not condemn: a third of a run that is wrong by five sigmas, or a

@@ -116,6 +116,18 @@ TEST(Trust, AWrongStretchIsNamedAWrongPartCondemns) {
   EXPECT_FALSE(MadeUpRun().fixes(2970, 1).fixes(30, 40).trust().trustworthy);
 }
 
+/// As clocks apart make them.
+TEST(Trust, AVerticalThatFitsDoesNotHideTheHorizontal) {
+  MadeUpRun run;
+  for (int i = 0; i < 200; ++i) run.fix({3.4, 0, 1}).fix({0, -3.4, 1}).fix({-3.4, 3.4, 1});
+  const Trust hardly = run.trust();  // horizontal 2.78, all 2.34
+  EXPECT_TRUE(hardly.trustworthy);
+  for (int i = 0; i < 600; ++i) run.fix({-3.6, 3.6, 1});
+  const Trust trust = run.trust();  // horizontal 3.22, all 2.69
+  EXPECT_FALSE(trust.trustworthy);
+  EXPECT_THAT(trust.reasons[0], HasSubstr("innovations are 3.2 times as large"));
+}
+
 /// A jump that was believed: noise is not what is wrong.
 TEST(Trust, OneLargeInnovationIsNamedForItself) {
   const Trust trust = MadeUpRun().fixes(200, 1).fix({500, 0, 0}).fixes(200, 1).trust();

@@ -22,7 +22,8 @@ bool is_finite(const Epoch& epoch);
 
 /// Of what a run amounts to. The size of innovations is the root of mean NIS / 3, 1 if their
 /// covariances are right.
-/// - Condemned: a size above 3 or below 0.3; a state that is not finite; fewer than ten used fixes.
+/// - Condemned: a size above 3, also of the horizontal components alone, or below 0.3; a state that
+/// is not finite; fewer than ten used fixes.
 /// - Named: a size above 1.5 or below 0.5; a stretch above 3.
 /// A size counts only if the mean is outside the band in which that of as many independent
 /// innovations as these are worth lies with 99.9 %.
