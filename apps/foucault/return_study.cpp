@@ -31,8 +31,8 @@ OutageOptions outages_of(const ReturnCase& what, const Settings& settings) {
   OutageOptions outages = settings.outages;
   if (what.log.empty()) outages.first_s = 200;
   outages.length_s = what.length_s;
-  outages.period_s = std::max(outages.period_s, what.length_s + kBetween);
-  if (what.log.empty()) outages.period_s = what.length_s + kBetween;
+  const bool too_short = outages.period_s <= what.length_s;
+  if (what.log.empty() || too_short) outages.period_s = what.length_s + kBetween;
   return outages;
 }
 
@@ -41,36 +41,45 @@ std::unique_ptr<Source> open(const ReturnCase& what, const Settings& settings) {
   return std::make_unique<RawlogSource>(what.log, settings.imu.sample_kind(), settings.rawlog);
 }
 
+/// Fixes that the method did not use, and for how long at a time.
 class LeftOut : public OutageRunObserver {
  public:
+  explicit LeftOut(ReturnOutcome& outcome) : outcome_(outcome) {}
+
   void fix(const FixResult& fix) override {
     if (fix.verdict == FixVerdict::gated || fix.verdict == FixVerdict::corrected) {
-      stamps_ns.push_back(fix.t_ns);
+      ++outcome_.left_out;
+      if (!since_ns_) since_ns_ = fix.t_ns;
+    } else if (fix.verdict == FixVerdict::used) {
+      end(fix.t_ns);
     }
+    last_ns_ = fix.t_ns;
   }
-  std::vector<int64_t> stamps_ns;
-};
+  void end() { end(last_ns_); }
 
-void add_left_out(const OutageRunResult& run, const LeftOut& left_out, ReturnOutcome& outcome) {
-  for (const int64_t t_ns : left_out.stamps_ns) {
-    const auto next = std::find_if(run.withheld.begin(), run.withheld.end(),
-                                   [t_ns](const Outage& o) { return o.end_ns > t_ns; });
-    if (next == run.withheld.begin()) continue;
-    ++outcome.left_out;
-    outcome.latest_s = std::max(outcome.latest_s, seconds_between((next - 1)->end_ns, t_ns));
+ private:
+  void end(int64_t t_ns) {
+    if (since_ns_) {
+      outcome_.longest_s = std::max(outcome_.longest_s, seconds_between(*since_ns_, t_ns));
+    }
+    since_ns_.reset();
   }
-}
+
+  ReturnOutcome& outcome_;
+  std::optional<int64_t> since_ns_;
+  int64_t last_ns_ = 0;
+};
 
 /// Squares of the largest horizontal drifts.
 std::vector<double> squares_of(const ReturnCase& what, const Settings& configured,
-                               const Settings& truth, ReturnOutcome* outcome) {
+                               const Settings& truth, ReturnOutcome& outcome) {
   const Method& method = find_method(what.method);
   const OutageOptions outages = outages_of(what, truth);
   std::vector<double> squares;
   for (const double shift_s : outages.shifts_s) {
     OutageRunOptions options;
     options.reference.keep_s = method.keep_references_s;
-    LeftOut left_out;
+    LeftOut left_out(outcome);
     const OutageRunResult run = run_with_outages(
         open(what, truth), OutageSchedule(outages, shift_s),
         [&](const Mounting& mounting, Sink& sink) {
@@ -80,7 +89,7 @@ std::vector<double> squares_of(const ReturnCase& what, const Settings& configure
     for (const OutageDrift& drift : run.drifts) {
       squares.push_back(drift.maximum.horizontal * drift.maximum.horizontal);
     }
-    if (outcome) add_left_out(run, left_out, *outcome);
+    left_out.end();
   }
   return squares;
 }
@@ -105,10 +114,11 @@ ReturnOutcome study_return(const ReturnCase& what, const Settings& settings) {
   Settings control = configured;
   control.gnss.gate_false_alarm = 0;
   try {
-    const std::vector<double> squares = squares_of(what, configured, settings, &outcome);
+    const std::vector<double> squares = squares_of(what, configured, settings, outcome);
     outcome.outages = static_cast<int64_t>(squares.size());
     outcome.drift_m = root_mean(squares);
-    outcome.control_m = root_mean(squares_of(what, control, settings, nullptr));
+    ReturnOutcome of_control;
+    outcome.control_m = root_mean(squares_of(what, control, settings, of_control));
   } catch (const DataError& error) {
     outcome.error = error.what();
   }
@@ -119,14 +129,14 @@ TextTable return_table(const std::vector<ReturnOutcome>& outcomes) {
   TextTable table;
   table.title = "Returns";
   table.header = {"recording", "noise",     "outage_s", "method",   "outages",
-                  "drift_m",   "control_m", "ratio",    "left_out", "latest_left_out_s",
+                  "drift_m",   "control_m", "ratio",    "left_out", "longest_left_out_s",
                   "error"};
   for (const ReturnOutcome& o : outcomes) {
     table.rows.push_back({name_of(o.what.log), fmt::format("{:g}", o.what.noise),
                           fmt::format("{:g}", o.what.length_s), o.what.method,
                           fmt::format("{}", o.outages), fmt::format("{:.4f}", o.drift_m),
                           fmt::format("{:.4f}", o.control_m), fmt::format("{:.4f}", o.ratio()),
-                          fmt::format("{}", o.left_out), fmt::format("{:.1f}", o.latest_s),
+                          fmt::format("{}", o.left_out), fmt::format("{:.1f}", o.longest_s),
                           o.error});
   }
   return table;
@@ -135,13 +145,12 @@ TextTable return_table(const std::vector<ReturnOutcome>& outcomes) {
 TextTable return_summary(const std::vector<ReturnOutcome>& outcomes) {
   TextTable table;
   table.title = "Returns after an outage: the worst of the methods";
-  table.header = {"recording", "noise", "outage [s]", "drift / gate off",
-                  "last left out after [s]"};
+  table.header = {"recording", "noise", "outage [s]", "drift / gate off", "longest left out [s]"};
   std::map<std::tuple<std::string, double, double>, std::pair<double, double>> worst;
   for (const ReturnOutcome& o : outcomes) {
-    auto& [ratio, latest] = worst[{name_of(o.what.log), o.what.noise, o.what.length_s}];
+    auto& [ratio, longest] = worst[{name_of(o.what.log), o.what.noise, o.what.length_s}];
     if (o.error.empty()) ratio = std::max(ratio, o.ratio());
-    latest = std::max(latest, o.latest_s);
+    longest = std::max(longest, o.longest_s);
   }
   for (const auto& [key, value] : worst) {
     const auto& [recording, noise, length_s] = key;

@@ -24,8 +24,8 @@ struct ReturnOutcome {
   int64_t outages = 0;
   double drift_m = 0;    ///< RMS of the largest horizontal drift of each outage
   double control_m = 0;  ///< the same with the gate off
-  int64_t left_out = 0;  ///< fixes, after the first outage
-  double latest_s = 0;   ///< after its outage, the last fix that was left out
+  int64_t left_out = 0;  ///< fixes
+  double longest_s = 0;  ///< the longest time from one that was left out to the next used one
   std::string error;     ///< why nothing came out
 
   double ratio() const { return drift_m / control_m; }

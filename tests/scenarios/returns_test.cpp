@@ -51,7 +51,7 @@ TEST(Returns, TrueFixesAreBelievedWhateverTheNoise) {
     const ReturnOutcome outcome = study_return(what, Settings());
     EXPECT_GE(outcome.outages, 5);
     EXPECT_LE(outcome.ratio(), 1.1) << what.noise << " " << what.length_s << what.method;
-    EXPECT_LE(outcome.latest_s, 5) << what.noise << " " << what.length_s << what.method;
+    EXPECT_LE(outcome.longest_s, 5) << what.noise << " " << what.length_s << what.method;
   }
 }
 

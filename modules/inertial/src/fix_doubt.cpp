@@ -164,6 +164,7 @@ DoubtOutcome FixDoubt::outcome() {
 
 void FixDoubt::judge_return() {
   const ReturnTrial::Verdict verdict = trial_->verdict();
+  offset_is_certain_ = verdict.certainly;
   if (verdict.offset) return begin_offset();
   for (std::size_t i = 0; i < outcome_.fixes.size(); ++i) {
     outcome_.fixes[i].action = verdict.used[i] ? Action::use : Action::leave_out;
@@ -344,9 +345,9 @@ void FixDoubt::move_state() {
 void FixDoubt::settle_at_end() {
   if (decided_) return;
   if (trial_ && !line_) judge_return();
-  const bool stays =
-      line_ && !line_drifts_ && seconds_between(begin_.t_ns, last_fix_ns_) > kJumpStays;
-  if (stays) move_state();
+  const bool constant = line_ && !line_drifts_;
+  const bool stays = seconds_between(begin_.t_ns, last_fix_ns_) > kJumpStays;
+  if (constant && (stays || (trial_ && !offset_is_certain_))) move_state();
   decided_ = true;
 }
 

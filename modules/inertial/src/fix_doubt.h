@@ -117,6 +117,7 @@ class FixDoubt {
   FixJudge judge_;  ///< as it was
   std::unique_ptr<Navigator> ahead_;
   std::optional<ReturnTrial> trial_;
+  bool offset_is_certain_ = false;
   Epoch begin_;  ///< the state at the first fix
   Epoch held_;   ///< the same, or without a covariance once a line has shown the velocity
   Eigen::Vector3d begin_innovation_n_;

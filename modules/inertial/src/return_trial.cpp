@@ -15,9 +15,10 @@ using Eigen::Vector3d;
 /// A noise model is off by a factor of ten now and then, the errors of a consumer IMU in curves by
 /// more; the prior falls as 1 / scale.
 constexpr double kLargestScale = 512;
-constexpr double kLogOutlier = -4.6;     ///< one fix in a hundred
-constexpr double kLogOffset = -4.6;      ///< one return in a hundred
-constexpr double kOffsetOdds = 20;       ///< of the posterior
+constexpr double kLogOutlier = -4.6;  ///< one fix in a hundred
+constexpr double kLogOffset = -4.6;   ///< one return in a hundred
+constexpr double kOffsetOdds = 100;   ///< of the posterior
+constexpr double kCertainOdds = 1000;
 constexpr double kLongEnough = 5;        ///< [s], of fixes
 constexpr std::size_t kEnoughFixes = 5;  ///< two to tell velocity, the others for outliers
 
@@ -88,12 +89,13 @@ ReturnTrial::Verdict ReturnTrial::verdict() const {
   const auto best = std::max_element(
       hypotheses_.begin(), hypotheses_.end() - 1,
       [](const auto& a, const auto& b) { return a.log_probability < b.log_probability; });
-  const bool is_offset = offset.log_probability > best->log_probability + std::log(kOffsetOdds);
+  const double odds = offset.log_probability - best->log_probability;
   constexpr double kScaleOdds = 20;  // of the posterior, against sigmas as they are
   const Hypothesis& nominal = hypotheses_.front();
   const bool as_said = nominal.log_probability > best->log_probability - std::log(kScaleOdds);
   const Hypothesis& believed = as_said ? nominal : *best;
-  return {is_offset, believed.scale, believed.used};
+  return {odds > std::log(kOffsetOdds), odds > std::log(kCertainOdds), believed.scale,
+          believed.used};
 }
 
 }  // namespace foucault

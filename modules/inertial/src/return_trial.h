@@ -21,11 +21,13 @@ namespace foucault {
 ///   position and velocity stay;
 /// - the fixes share an offset: position, and nothing else, is loosened by it.
 /// In each, single fixes may be outliers. The recording is right until the contrary is shown: an
-/// offset is believed if it is kOffsetOdds times as likely as the best of the others.
+/// offset is believed if it is a hundred times as likely as the best of the others, and a thousand
+/// times where nothing that follows confirms it.
 class ReturnTrial {
  public:
   struct Verdict {
     bool offset = false;     ///< the fixes are in error
+    bool certainly = false;  ///< even if they do not jump back in sight
     double scale = 1;        ///< of the state's sigmas, if they are not
     std::vector<bool> used;  ///< which fixes are no outliers then, in order
   };
