@@ -271,7 +271,8 @@ Panel nis_panel(const RunData& data, const Consistency& c) {
   panel.series.back().column = "NIS running mean";
   panel.series.back().size = 1.6;
   if (!rejected.x.empty()) {
-    panel.series.push_back(points("rejected", Ink::vermillion, 5, rejected.x, rejected.columns[0]));
+    panel.series.push_back(
+        points(data.not_used_name(), Ink::vermillion, 5, rejected.x, rejected.columns[0]));
     panel.series.back().column = "NIS rejected";
     panel.series.back().shape = Shape::cross;
   }

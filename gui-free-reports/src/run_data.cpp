@@ -298,4 +298,8 @@ std::vector<Interval> RunData::outages() const {
   return intervals;
 }
 
+std::string RunData::not_used_name() const {
+  return verdicts.count(FixVerdict::corrected) > 0 ? "rejected or corrected" : "rejected";
+}
+
 }  // namespace foucault::reports

@@ -163,6 +163,8 @@ class RunData {
   std::optional<Consistency> consistency;
   std::map<FixQuality, size_t> qualities;
   std::map<FixVerdict, size_t> verdicts;
+  /// What to call the fixes that were not used as they are.
+  std::string not_used_name() const;
   std::map<FixVerdict, Stretches> verdict_stretches;
   StepWatch imu_steps{0.2};
   StepWatch fix_steps{4.0};  ///< between used fixes

@@ -260,8 +260,9 @@ std::optional<Figure> ground_track(const RunData& data, const std::string& subti
   if (!data.fix_places.empty()) panel.series.push_back(fix_points(data.fix_places.rows()));
   if (!data.rejected_places.empty()) {
     const DecimatedTable::Rows rejected = data.rejected_places.rows();
-    panel.series.push_back(
-        points("rejected fix", Ink::black, 5, rejected.columns[1], rejected.columns[0]));
+    panel.series.push_back(points(data.not_used_name() + " fix", Ink::black, 5, rejected.columns[1],
+                                  rejected.columns[0]));
+    panel.series.back().column = "rejected fix";
     panel.series.back().shape = Shape::cross;
     panel.series.back().range_role = RangeRole::typical;
   }
@@ -418,7 +419,7 @@ Panel innovation_panel(const RunData& data, const DecimatedTable::Rows& used,
   panel.series.back().range_role = RangeRole::most;
   if (rejected.x.empty()) return panel;
   panel.series.push_back(
-      points("rejected", Ink::vermillion, 5, rejected.x, rejected.columns[axis]));
+      points(data.not_used_name(), Ink::vermillion, 5, rejected.x, rejected.columns[axis]));
   panel.series.back().column = column + " rejected";
   panel.series.back().shape = Shape::cross;
   panel.series.back().range_role = RangeRole::none;
@@ -503,7 +504,7 @@ Panel type_panel(const RunData& data) {
   const DecimatedTable::Rows rows = data.fix_types.rows();
   std::map<int, double> place;
   if (data.verdicts.size() > data.verdicts.count(FixVerdict::used)) {
-    panel.y.categories.emplace_back("rejected");
+    panel.y.categories.emplace_back(data.not_used_name());
   }
   for (const auto& [quality, count] : data.qualities) {
     place[static_cast<int>(quality)] = static_cast<double>(panel.y.categories.size());
