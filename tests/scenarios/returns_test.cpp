@@ -4,10 +4,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "fault_study.h"
+#include "foucault/simulation/simulated_source.h"
+#include "methods.h"
 #include "return_study.h"
 #include "support/test_folder.h"
 
@@ -64,6 +67,28 @@ TEST(Returns, ABetterQualityAloneMakesNoFixTrue) {
     EXPECT_GT(outcome.rejected, 25) << outcome.method;
     EXPECT_LT(outcome.largest_m, 0.1) << outcome.method;
   }
+}
+
+struct CountLeftOut : Sink {
+  void fix(const FixResult& fix) override { left_out += fix.verdict != FixVerdict::used; }
+  int left_out = 0;
+};
+
+/// The wrong ones end while the first fixes are still being weighed.
+TEST(Returns, NoTrueFixIsLeftOutAfterAJumpAtTenHertz) {
+  ScenarioOptions scenario = fault_scenario(1);
+  scenario.duration_s = 260;
+  scenario.gnss_rate_hz = 10;
+  const double begin_s = kFaultStart;
+  FaultySource source(
+      std::make_unique<SimulatedSource>(scenario, imu_preset("ADIS16465")),
+      {{FaultKind::fix_gap, begin_s, 20}, {FaultKind::fix_jump, begin_s + 20, 4, 20}}, 1);
+  CountLeftOut sink;
+  const std::unique_ptr<Estimator> estimator =
+      find_method("ekf").make(Settings(), source.mounting(), sink);
+  while (const std::optional<Measurement> m = source.next()) estimator->process(*m);
+  estimator->finish();
+  EXPECT_EQ(sink.left_out, 40);
 }
 
 /// The fixes jump to the truth at 200 s. It is understood 90 s later, and used from the jump on.

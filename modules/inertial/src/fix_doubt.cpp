@@ -191,6 +191,7 @@ void FixDoubt::begin_offset() {
 /// those before or those after are in error: which of them, the prediction tells that no fix of the
 /// doubt has touched.
 void FixDoubt::follow_offset(const Rejected& fix) {
+  ++followed_;
   const double dt = seconds_between(line_->t_ns, fix.t_ns);
   const Vector3d variance_n =
       2 * judge_.level() * fix.variance_n + dt * dt * velocity_variance(ahead_->epoch());
@@ -208,10 +209,10 @@ void FixDoubt::follow_offset(const Rejected& fix) {
 }
 
 void FixDoubt::end_offset(bool later_are_true, int64_t now_ns) {
-  outcome_.notices.push_back(fmt::format("fixes have jumped by {:.3f} s; those {} are believed",
-                                         to_seconds(now_ns),
-                                         later_are_true ? "after it" : "before it"));
-  const std::size_t first_of_later = outcome_.fixes.size() - kMissesThatEndLine;
+  outcome_.notices.push_back(
+      fmt::format("fixes have jumped shortly before {}; those {} are believed", when(now_ns),
+                  later_are_true ? "after it" : "before it"));
+  const std::size_t first_of_later = followed_ - kMissesThatEndLine;
   for (std::size_t i = 0; i < outcome_.fixes.size(); ++i) {
     const bool is_true = (i >= first_of_later) == later_are_true;
     outcome_.fixes[i].action = is_true ? Action::use : Action::leave_out;

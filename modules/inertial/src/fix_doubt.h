@@ -49,13 +49,15 @@ struct DoubtOutcome {
 /// whether the fixes were wrong or the state. So what is true is used from its beginning on, in
 /// every method, whenever it was understood.
 ///
-/// After an outage ReturnTrial decides. Otherwise the state was held by fixes a moment ago, and
+/// After an outage ReturnTrial decides. Fixes that are in error by it are left out until they jump;
+/// then those before or those after the jump are true, whichever agree with the prediction better.
+/// Otherwise the state was held by fixes a moment ago, and
 /// - one that agrees again ends the doubt; those in between were wrong;
 /// - fixes that scatter about the prediction have sigmas that are too small, and are believed;
 /// - fixes on a line, an offset that is constant or grows steadily from nothing, are in error: the
 ///   IMU holds velocity to cm/s. They are used without it. One that grows for kLongestDoubt, or is
 ///   constant for so long, or still constant when no more fixes come after kJumpStays, is the
-///   truth: a car does not leave a garage with wrong fixes for good;
+///   truth;
 /// - fixes that leave the prediction smoothly on any other way, or by a jump and then steadily, as
 ///   when they return from an error that the state has followed, are true: the state was wrong;
 /// - those that scatter wildly are waited through, for kLongestDoubt at most.
@@ -118,8 +120,9 @@ class FixDoubt {
   std::unique_ptr<Navigator> ahead_;
   std::optional<ReturnTrial> trial_;
   bool offset_is_certain_ = false;
-  Epoch begin_;  ///< the state at the first fix
-  Epoch held_;   ///< the same, or without a covariance once a line has shown the velocity
+  std::size_t followed_ = 0;  ///< fixes, since an offset was found
+  Epoch begin_;               ///< the state at the first fix
+  Epoch held_;  ///< the same, or without a covariance once a line has shown the velocity
   Eigen::Vector3d begin_innovation_n_;
   Eigen::Vector3d begin_variance_n_;  ///< of the innovation there
   int64_t time_ns_;
