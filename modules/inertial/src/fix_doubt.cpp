@@ -68,6 +68,7 @@ FixDoubt::FixDoubt(const GnssOptions& options, const FixJudge& judge, const Navi
                    const GnssFix& fix, bool returns)
     : options_(options),
       judge_(judge),
+      start_(navigator.ahead(1)),
       ahead_(navigator.ahead(1)),
       begin_(navigator.epoch()),
       held_(begin_),
@@ -118,6 +119,7 @@ void FixDoubt::add_increment(const ImuIncrement& increment) {
 
 void FixDoubt::propagate(const ImuIncrement& increment) {
   ahead_->propagate(increment);
+  driven_.push_back(increment);
   if (trial_) trial_->propagate(increment);
   time_ns_ = increment.t_end_ns;
 }
@@ -133,7 +135,7 @@ void FixDoubt::meet(const GnssFix& fix) {
   }
   if (line_ && !trial_) return follow_line(fix, innovation, since_last);
   if (!trial_ && judge_.passes(square)) {
-    outcome_.fixes.push_back({Action::use, fix});
+    outcome_.fixes.push_back({Action::use, fix, {}});
     decided_ = true;
     return;
   }
@@ -144,13 +146,20 @@ void FixDoubt::meet(const GnssFix& fix) {
   if (recent_.empty() || seconds_between(recent_.back().t_ns, fix.t_ns) >= kThinning) {
     recent_.push_back(rejected);
   }
-  while (seconds_between(recent_.front().t_ns, fix.t_ns) > kWindow) recent_.pop_front();
+  while (recent_.size() > look_needs() &&
+         seconds_between(recent_.front().t_ns, fix.t_ns) > kWindow) {
+    recent_.pop_front();
+  }
   look_at();
 }
 
 void FixDoubt::meet_returning(const Rejected& rejected) {
   if (line_) return follow_offset(rejected);
+  const bool too_close =
+      !recent_.empty() && seconds_between(recent_.back().t_ns, rejected.t_ns) < kThinning;
+  if (too_close) return;
   recent_.push_back(rejected);
+  tried_.push_back(outcome_.fixes.size() - 1);
   trial_->add(outcome_.fixes.back().fix);
   if (trial_->is_over()) judge_return();
 }
@@ -166,8 +175,9 @@ void FixDoubt::judge_return() {
   const ReturnTrial::Verdict verdict = trial_->verdict();
   offset_is_certain_ = verdict.certainly;
   if (verdict.offset) return begin_offset();
-  for (std::size_t i = 0; i < outcome_.fixes.size(); ++i) {
-    outcome_.fixes[i].action = verdict.used[i] ? Action::use : Action::leave_out;
+  for (FixDecision& decision : outcome_.fixes) decision.action = Action::use;
+  for (std::size_t i = 0; i < tried_.size(); ++i) {
+    if (!verdict.used[i]) outcome_.fixes[tried_[i]].action = Action::leave_out;
   }
   outcome_.state_was_wrong = verdict.scale > 1;
   decided_ = true;
@@ -191,7 +201,6 @@ void FixDoubt::begin_offset() {
 /// those before or those after are in error: which of them, the prediction tells that no fix of the
 /// doubt has touched.
 void FixDoubt::follow_offset(const Rejected& fix) {
-  ++followed_;
   const double dt = seconds_between(line_->t_ns, fix.t_ns);
   const Vector3d variance_n =
       2 * judge_.level() * fix.variance_n + dt * dt * velocity_variance(ahead_->epoch());
@@ -202,7 +211,8 @@ void FixDoubt::follow_offset(const Rejected& fix) {
     line_missed_ = 0;
     return;
   }
-  if (++line_missed_ < kMissesThatEndLine) return;
+  if (line_missed_++ == 0) first_missed_ns_ = fix.t_ns;
+  if (line_missed_ < kMissesThatEndLine) return;
   const bool after_is_nearer =
       fix.square < mahalanobis_squared(line_->offset_n, fix.innovation_covariance);
   end_offset(after_is_nearer, fix.t_ns);
@@ -212,16 +222,19 @@ void FixDoubt::end_offset(bool later_are_true, int64_t now_ns) {
   outcome_.notices.push_back(
       fmt::format("fixes have jumped shortly before {}; those {} are believed", when(now_ns),
                   later_are_true ? "after it" : "before it"));
-  const std::size_t first_of_later = followed_ - kMissesThatEndLine;
-  for (std::size_t i = 0; i < outcome_.fixes.size(); ++i) {
-    const bool is_true = (i >= first_of_later) == later_are_true;
-    outcome_.fixes[i].action = is_true ? Action::use : Action::leave_out;
+  for (FixDecision& decision : outcome_.fixes) {
+    const bool is_true = (decision.fix.t_ns >= first_missed_ns_) == later_are_true;
+    decision.action = is_true ? Action::use : Action::leave_out;
   }
   outcome_.state_was_wrong = !later_are_true;
   decided_ = true;
 }
 
 // While the state is held -----------------------------------------------------------------------
+
+std::size_t FixDoubt::look_needs() const {
+  return std::max(kLookNeeds, static_cast<std::size_t>(options_.reinstate_after) + 1);
+}
 
 /// What the fixes of the doubt are, once there are enough.
 void FixDoubt::look_at() {
@@ -230,9 +243,7 @@ void FixDoubt::look_at() {
     outcome_.state_was_wrong = true;
     return believe_all();
   }
-  const std::size_t needed =
-      std::max(kLookNeeds, static_cast<std::size_t>(options_.reinstate_after) + 1);
-  if (recent_.size() < needed ||
+  if (recent_.size() < look_needs() ||
       seconds_between(recent_.front().t_ns, recent_.back().t_ns) < kLookAfter) {
     return;
   }
@@ -281,7 +292,7 @@ void FixDoubt::end_line(const GnssFix& fix) {
   outcome_.notices.push_back(
       fmt::format("fixes agree with the IMU again; {} since {} were not taken as they are",
                   outcome_.fixes.size(), when(begin_.t_ns)));
-  outcome_.fixes.push_back({Action::use, fix});
+  outcome_.fixes.push_back({Action::use, fix, {}});
   decided_ = true;
 }
 
@@ -290,10 +301,11 @@ void FixDoubt::use_corrected(const Vector3d& error_n, const Eigen::Matrix3d& var
                              double since_last) {
   FixDecision& decision = outcome_.fixes.back();
   decision.action = Action::use_corrected;
-  decision.fix.antenna = LocalFrame(decision.fix.antenna).to_geodetic(-error_n);
+  decision.corrected = decision.fix;
+  decision.corrected.antenna = LocalFrame(decision.fix.antenna).to_geodetic(-error_n);
   const double times = std::max(1.0, kLineMemory / std::max(0.01, since_last));
-  decision.fix.position_covariance += times * variance_n;
-  ahead_->update(decision.fix);
+  decision.corrected.position_covariance += times * variance_n;
+  ahead_->update(decision.corrected);
 }
 
 void FixDoubt::miss_line() {
@@ -308,7 +320,9 @@ void FixDoubt::miss_line() {
 
 // What comes out --------------------------------------------------------------------------------
 
-void FixDoubt::leave_out(const GnssFix& fix) { outcome_.fixes.push_back({Action::leave_out, fix}); }
+void FixDoubt::leave_out(const GnssFix& fix) {
+  outcome_.fixes.push_back({Action::leave_out, fix, {}});
+}
 
 void FixDoubt::believe_all() {
   for (FixDecision& decision : outcome_.fixes) decision.action = Action::use;
@@ -323,9 +337,31 @@ void FixDoubt::blame_state() {
       "fixes since {} contradict the IMU, the first by {:.2f} m; the state is taken for wrong and "
       "loosened there",
       when(begin_.t_ns), off));
-  if (!trial_) outcome_.loosened = looseness();
-  outcome_.state_was_wrong = true;
   believe_all();
+  outcome_.state_was_wrong = trial_.has_value();  // else what is loosened makes up for it
+  if (trial_) return;
+  outcome_.loosened = looseness();
+  leave_out_unlikely();
+}
+
+/// Drives the loosened state over the doubt once more: what is an outlier to it is one.
+void FixDoubt::leave_out_unlikely() {
+  const std::unique_ptr<Navigator> loosened = start_->ahead(1);
+  loosened->loosen(*outcome_.loosened);
+  std::size_t driven = 0;
+  for (std::size_t i = 0; i < outcome_.fixes.size(); ++i) {
+    FixDecision& decision = outcome_.fixes[i];
+    while (driven < driven_.size() && driven_[driven].t_end_ns <= decision.fix.t_ns) {
+      loosened->propagate(driven_[driven++]);
+    }
+    GnssFix trusted = decision.fix;
+    trusted.position_covariance *= judge_.level();
+    if (is_likely(loosened->innovation(trusted))) {
+      loosened->update(trusted);
+    } else {
+      decision.action = Action::leave_out;
+    }
+  }
 }
 
 /// Its position was wrong, not its motion. After an outage it has come there by a drift, for which

@@ -32,7 +32,8 @@ struct InnovationLine {
 struct FixDecision {
   enum class Action { use, leave_out, use_corrected };
   Action action = Action::use;
-  GnssFix fix;  ///< as it was; for use_corrected less the line, with its variance
+  GnssFix fix;        ///< as it was
+  GnssFix corrected;  ///< for use_corrected: less the line, with its variance
 };
 
 /// What became of a doubt.
@@ -94,6 +95,7 @@ class FixDoubt {
   void begin_offset();
   void follow_offset(const Rejected& fix);
   void end_offset(bool later_are_true, int64_t now_ns);
+  std::size_t look_needs() const;
   void look_at();
   void begin_line(const InnovationLine& line);
   void follow_line(const GnssFix& fix, const Innovation& innovation, double since_last);
@@ -104,6 +106,7 @@ class FixDoubt {
   void leave_out(const GnssFix& fix);
   void believe_all();
   void blame_state();
+  void leave_out_unlikely();
   void move_state();
   void settle_at_end();
 
@@ -116,12 +119,15 @@ class FixDoubt {
   bool is_smooth() const;
 
   GnssOptions options_;
-  FixJudge judge_;  ///< as it was
+  FixJudge judge_;                    ///< as it was
+  std::unique_ptr<Navigator> start_;  ///< stays where the doubt begins
   std::unique_ptr<Navigator> ahead_;
+  std::vector<ImuIncrement> driven_;  ///< by ahead_, divided at fixes
   std::optional<ReturnTrial> trial_;
   bool offset_is_certain_ = false;
-  std::size_t followed_ = 0;  ///< fixes, since an offset was found
-  Epoch begin_;               ///< the state at the first fix
+  std::vector<std::size_t> tried_;  ///< which of the fixes the trial has got
+  int64_t first_missed_ns_ = 0;     ///< the first fix since an offset was met last
+  Epoch begin_;                     ///< the state at the first fix
   Epoch held_;  ///< the same, or without a covariance once a line has shown the velocity
   Eigen::Vector3d begin_innovation_n_;
   Eigen::Vector3d begin_variance_n_;  ///< of the innovation there

@@ -65,7 +65,7 @@ bool FixJudge::believes(int64_t t_ns, const Innovation& innovation) {
   const double square = mahalanobis_squared(innovation.value_n, innovation.covariance);
   const bool passed = passes(square);
   remember(square);
-  if (!passed && !gate_is_open(t_ns)) return false;
+  if (!passed) return gate_is_open(t_ns);
   const double share = std::min(square / 3, kLargestShare * level());
   believed_level_ += (share - believed_level_) / kBelievedMemory;
   return true;

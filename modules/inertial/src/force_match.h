@@ -16,8 +16,9 @@ namespace foucault {
 /// acceleration of the antenna minus gravity, over windows of three fixes a, m, b. The second
 /// difference of positions and that of the specific force, turned by the gyroscopes into the axes
 /// at a, added up twice and with the lever arm, are the same weighted mean of the acceleration; its
-/// length needs no attitude, and manoeuvres do no harm. Windows in which the body turns a lot are
-/// left out: gyroscopes of a wrong scale must not be taken for accelerometers of one. The factor is
+/// length needs no attitude. Windows in which the fixes accelerate a lot are left out, where one of
+/// them may be wrong, and those in which the body turns a lot: gyroscopes of a wrong scale must not
+/// be taken for accelerometers of one. The factor is
 /// the median over the windows.
 class ForceMatch {
  public:

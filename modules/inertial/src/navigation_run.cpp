@@ -535,7 +535,7 @@ void NavigationRun::handle_fix(const GnssFix& fix) {
       result.verdict = FixVerdict::low_quality;
     } else {
       const std::optional<FixDecision> decision = decide(trusted, innovation);
-      if (!decision) return doubt(fix, trusted, returns_after_outage(fix));
+      if (!decision) return doubt(fix, trusted);
       result.verdict = carry_out(*decision, trusted, result);
     }
   }
@@ -548,21 +548,25 @@ std::optional<FixDecision> NavigationRun::decide(const GnssFix& fix, const Innov
   if (std::optional<FixDecision> decision = decided_before(fix)) return decision;
   const bool believed = judge_->believes(fix.t_ns, innovation);
   if (!believed || returns_after_outage(fix)) return std::nullopt;
-  return FixDecision{FixDecision::Action::use, fix};
+  return FixDecision{FixDecision::Action::use, fix, {}};
 }
 
-/// No fix has held the state for some time.
+/// So long without fixes is more than one or two that were left out, and long enough for a drift.
+bool NavigationRun::is_unheld(const GnssFix& fix) const {
+  constexpr double kUnheld = 2.5;  // [s]
+  return seconds_between(last_used_ns_, fix.t_ns) > kUnheld && !judge_->gate_is_open(fix.t_ns);
+}
+
+/// Unheld for longer than usual in this recording.
 bool NavigationRun::returns_after_outage(const GnssFix& fix) const {
-  constexpr double kOutage = 3;             // [s]
   constexpr double kOutageIntervals = 3.5;  // of fixes
   const double interval = 1e-9 * static_cast<double>(fix_interval_ns_);
-  const double unheld = seconds_between(last_used_ns_, fix.t_ns);
-  return unheld > std::max(kOutage, kOutageIntervals * interval) && !judge_->gate_is_open(fix.t_ns);
+  return is_unheld(fix) && seconds_between(last_used_ns_, fix.t_ns) > kOutageIntervals * interval;
 }
 
-void NavigationRun::doubt(const GnssFix& fix, const GnssFix& trusted, bool returns) {
+void NavigationRun::doubt(const GnssFix& fix, const GnssFix& trusted) {
   doubted_fix_ = fix;
-  doubt_ = std::make_unique<FixDoubt>(options_.gnss, *judge_, *navigator_, trusted, returns);
+  doubt_ = std::make_unique<FixDoubt>(options_.gnss, *judge_, *navigator_, trusted, is_unheld(fix));
   for (const auto& [t_ns, event] : pending_) {  // they are in order, and wait where they are
     if (const auto* next = std::get_if<GnssFix>(&event)) show_doubt(*next);
   }
@@ -614,7 +618,7 @@ FixVerdict NavigationRun::carry_out(const FixDecision& decision, const GnssFix& 
     case FixDecision::Action::leave_out:
       return FixVerdict::gated;
     case FixDecision::Action::use_corrected:
-      navigator_->update(decision.fix);
+      navigator_->update(decision.corrected);
       remember_fix_time();
       return FixVerdict::corrected;
     case FixDecision::Action::use:

@@ -35,6 +35,11 @@ double log_density_of_error(const Vector3d& value, const Matrix3d& covariance) {
 
 }  // namespace
 
+bool is_likely(const Innovation& innovation) {
+  return log_density(innovation.value_n, innovation.covariance) >=
+         kLogOutlier + log_density_of_error(innovation.value_n, innovation.covariance);
+}
+
 ReturnTrial::ReturnTrial(const Navigator& navigator, const GnssFix& first, double level)
     : level_(level), begin_ns_(first.t_ns), last_ns_(first.t_ns) {
   for (double scale = 1; scale <= kLargestScale; scale *= 2) add_scale(navigator, scale);
@@ -84,16 +89,23 @@ bool ReturnTrial::is_over() const {
          seconds_between(begin_ns_, last_ns_) >= kLongEnough;
 }
 
+/// Sigmas as they are unless others are kScaleOdds times as likely; of those that believe most of
+/// the fixes, if there are any: else the largest.
+const ReturnTrial::Hypothesis& ReturnTrial::best_scale() const {
+  constexpr double kScaleOdds = 20;  // of the posterior
+  const Hypothesis* best = nullptr;
+  for (const Hypothesis& h : hypotheses_) {
+    const auto used = std::count(h.used.begin(), h.used.end(), true);
+    if (h.offset || 2 * static_cast<std::size_t>(used) < h.used.size()) continue;
+    const double margin = best == &hypotheses_.front() ? std::log(kScaleOdds) : 0;
+    if (!best || h.log_probability > best->log_probability + margin) best = &h;
+  }
+  return best ? *best : hypotheses_[hypotheses_.size() - 2];
+}
+
 ReturnTrial::Verdict ReturnTrial::verdict() const {
-  const Hypothesis& offset = hypotheses_.back();
-  const auto best = std::max_element(
-      hypotheses_.begin(), hypotheses_.end() - 1,
-      [](const auto& a, const auto& b) { return a.log_probability < b.log_probability; });
-  const double odds = offset.log_probability - best->log_probability;
-  constexpr double kScaleOdds = 20;  // of the posterior, against sigmas as they are
-  const Hypothesis& nominal = hypotheses_.front();
-  const bool as_said = nominal.log_probability > best->log_probability - std::log(kScaleOdds);
-  const Hypothesis& believed = as_said ? nominal : *best;
+  const Hypothesis& believed = best_scale();
+  const double odds = hypotheses_.back().log_probability - believed.log_probability;
   return {odds > std::log(kOffsetOdds), odds > std::log(kCertainOdds), believed.scale,
           believed.used};
 }

@@ -10,6 +10,10 @@
 
 namespace foucault {
 
+/// Whether a fix of this innovation is more likely true than an outlier, of which there is one in a
+/// hundred.
+bool is_likely(const Innovation& innovation);
+
 /// What the first fixes after an outage say: is the prediction as good as its covariance, worse by
 /// some factor, or are the fixes in error?
 ///
@@ -20,9 +24,9 @@ namespace foucault {
 /// - the covariance is scale^2 times what it was, the noise model being in doubt: correlations of
 ///   position and velocity stay;
 /// - the fixes share an offset: position, and nothing else, is loosened by it.
-/// In each, single fixes may be outliers. The recording is right until the contrary is shown: an
-/// offset is believed if it is a hundred times as likely as the best of the others, and a thousand
-/// times where nothing that follows confirms it.
+/// In each, single fixes may be outliers, but not most of them. The recording is right until the
+/// contrary is shown: an offset is believed if it is a hundred times as likely as the best of the
+/// others, and a thousand times where nothing that follows confirms it.
 class ReturnTrial {
  public:
   struct Verdict {
@@ -53,6 +57,7 @@ class ReturnTrial {
 
   void add_scale(const Navigator& navigator, double scale);
   void add_offset(const Navigator& navigator, double variance);
+  const Hypothesis& best_scale() const;
   static void try_fix(Hypothesis& hypothesis, const GnssFix& fix);
 
   double level_;

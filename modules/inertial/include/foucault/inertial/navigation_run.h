@@ -163,8 +163,9 @@ class NavigationRun : public Estimator {
   void handle_fix(const GnssFix& fix);
   std::optional<FixDecision> decide(const GnssFix& fix, const Innovation& innovation);
   std::optional<FixDecision> decided_before(const GnssFix& fix);
+  bool is_unheld(const GnssFix& fix) const;
   bool returns_after_outage(const GnssFix& fix) const;
-  void doubt(const GnssFix& fix, const GnssFix& trusted, bool returns);
+  void doubt(const GnssFix& fix, const GnssFix& trusted);
   bool show_doubt(const Measurement& measurement);
   void look_beyond_doubt(const Measurement& measurement);
   void resolve_doubt();
