@@ -69,26 +69,45 @@ TEST(Returns, ABetterQualityAloneMakesNoFixTrue) {
   }
 }
 
-struct CountLeftOut : Sink {
-  void fix(const FixResult& fix) override { left_out += fix.verdict != FixVerdict::used; }
-  int left_out = 0;
-};
+/// Fixes that `ekf` does not use as they are, of a trip with faults.
+int left_out(const ScenarioOptions& scenario, const std::vector<Fault>& faults,
+             const Settings& settings) {
+  struct Count : Sink {
+    void fix(const FixResult& fix) override { fixes += fix.verdict != FixVerdict::used; }
+    int fixes = 0;
+  } count;
+  FaultySource source(std::make_unique<SimulatedSource>(scenario, imu_preset("ADIS16465")), faults,
+                      1);
+  const std::unique_ptr<Estimator> estimator =
+      find_method("ekf").make(settings, source.mounting(), count);
+  while (const std::optional<Measurement> m = source.next()) estimator->process(*m);
+  estimator->finish();
+  return count.fixes;
+}
 
 /// The wrong ones end while the first fixes are still being weighed.
 TEST(Returns, NoTrueFixIsLeftOutAfterAJumpAtTenHertz) {
   ScenarioOptions scenario = fault_scenario(1);
   scenario.duration_s = 260;
   scenario.gnss_rate_hz = 10;
-  const double begin_s = kFaultStart;
-  FaultySource source(
-      std::make_unique<SimulatedSource>(scenario, imu_preset("ADIS16465")),
-      {{FaultKind::fix_gap, begin_s, 20}, {FaultKind::fix_jump, begin_s + 20, 4, 20}}, 1);
-  CountLeftOut sink;
-  const std::unique_ptr<Estimator> estimator =
-      find_method("ekf").make(Settings(), source.mounting(), sink);
-  while (const std::optional<Measurement> m = source.next()) estimator->process(*m);
-  estimator->finish();
-  EXPECT_EQ(sink.left_out, 40);
+  EXPECT_EQ(left_out(scenario,
+                     {{FaultKind::fix_gap, kFaultStart, 20},
+                      {FaultKind::fix_jump, kFaultStart + 20, 4, 20}},
+                     Settings()),
+            40);
+}
+
+/// One in half a minute, or one in five seconds, with the noise of the IMU taken for a tenth.
+TEST(Returns, RareFixesAreBelieved) {
+  Settings settings;
+  settings.imu = settings.imu.scaled(0.1);
+  for (const double period_s : {5, 32}) {
+    std::vector<Fault> gaps;
+    for (double t = kFaultStart; t < 440; t += period_s) {
+      gaps.push_back({FaultKind::fix_gap, t, period_s - 1});
+    }
+    EXPECT_EQ(left_out(fault_scenario(1), gaps, settings), 0) << period_s;
+  }
 }
 
 /// The fixes jump to the truth at 200 s. It is understood 90 s later, and used from the jump on.

@@ -155,10 +155,11 @@ void FixDoubt::meet(const GnssFix& fix) {
 
 void FixDoubt::meet_returning(const Rejected& rejected) {
   if (line_) return follow_offset(rejected);
-  const bool too_close =
-      !recent_.empty() && seconds_between(recent_.back().t_ns, rejected.t_ns) < kThinning;
-  if (too_close) return;
   recent_.push_back(rejected);
+  const auto since_tried = [&] {
+    return seconds_between(outcome_.fixes[tried_.back()].fix.t_ns, rejected.t_ns);
+  };
+  if (!tried_.empty() && since_tried() < kThinning) return;
   tried_.push_back(outcome_.fixes.size() - 1);
   trial_->add(outcome_.fixes.back().fix);
   if (trial_->is_over()) judge_return();
