@@ -331,38 +331,56 @@ void FixDoubt::believe_all() {
 }
 
 /// The state was wrong from the first fix on: position, motion and biases; by a drift if there was
-/// an outage.
+/// an outage. Unless it is likelier that its sigmas are too small, and some fixes outliers.
 void FixDoubt::blame_state() {
-  const double off = begin_innovation_n_.norm();
-  outcome_.notices.push_back(fmt::format(
-      "fixes since {} contradict the IMU, the first by {:.2f} m; the state is taken for wrong and "
-      "loosened there",
-      when(begin_.t_ns), off));
   believe_all();
-  outcome_.state_was_wrong = trial_.has_value();  // else what is loosened makes up for it
-  if (trial_) return;
-  outcome_.loosened = looseness();
-  leave_out_unlikely();
+  outcome_.state_was_wrong = trial_.has_value();
+  const Matrix15d added = looseness();
+  Pass best;
+  if (!trial_) {
+    std::unique_ptr<Navigator> loosened = start_->ahead(1);
+    loosened->loosen(added);
+    best = drive_again(std::move(loosened));
+    outcome_.loosened = added;
+    for (double scale = 1; scale <= kLargestScale; scale *= 2) {
+      Pass pass = drive_again(start_->ahead(scale));
+      pass.log_probability -= std::log(scale);
+      if (!pass.believes_most() || pass.log_probability < best.log_probability) continue;
+      best = pass;
+      outcome_.loosened.reset();
+    }
+    for (std::size_t i = 0; i < best.is_true.size(); ++i) {
+      if (!best.is_true[i]) outcome_.fixes[i].action = Action::leave_out;
+    }
+  }
+  const char* verdict = outcome_.loosened || trial_
+                            ? "the state is taken for wrong there"
+                            : "those that contradict each other are left out";
+  outcome_.notices.push_back(
+      fmt::format("fixes since {} contradict the IMU, the first by {:.2f} m; {}", when(begin_.t_ns),
+                  begin_innovation_n_.norm(), verdict));
 }
 
-/// Drives the loosened state over the doubt once more: what is an outlier to it is one.
-void FixDoubt::leave_out_unlikely() {
-  const std::unique_ptr<Navigator> loosened = start_->ahead(1);
-  loosened->loosen(*outcome_.loosened);
+bool FixDoubt::Pass::believes_most() const {
+  const auto count = std::count(is_true.begin(), is_true.end(), true);
+  return 2 * static_cast<std::size_t>(count) >= is_true.size();
+}
+
+FixDoubt::Pass FixDoubt::drive_again(std::unique_ptr<Navigator> navigator) const {
+  Pass pass;
   std::size_t driven = 0;
-  for (std::size_t i = 0; i < outcome_.fixes.size(); ++i) {
-    FixDecision& decision = outcome_.fixes[i];
+  for (const FixDecision& decision : outcome_.fixes) {
     while (driven < driven_.size() && driven_[driven].t_end_ns <= decision.fix.t_ns) {
-      loosened->propagate(driven_[driven++]);
+      navigator->propagate(driven_[driven++]);
     }
     GnssFix trusted = decision.fix;
     trusted.position_covariance *= judge_.level();
-    if (is_likely(loosened->innovation(trusted))) {
-      loosened->update(trusted);
-    } else {
-      decision.action = Action::leave_out;
-    }
+    const FixLikelihood likelihood = likelihood_of(navigator->innovation(trusted));
+    pass.log_probability += likelihood.log_density;
+    pass.is_true.push_back(likelihood.is_true);
+    if (likelihood.is_true) navigator->update(trusted);
   }
+  return pass;
 }
 
 /// Its position was wrong, not its motion. After an outage it has come there by a drift, for which

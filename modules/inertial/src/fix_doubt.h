@@ -106,7 +106,13 @@ class FixDoubt {
   void leave_out(const GnssFix& fix);
   void believe_all();
   void blame_state();
-  void leave_out_unlikely();
+  /// The doubt once more, by another navigator: which fixes are true to it.
+  struct Pass {
+    double log_probability = 0;
+    std::vector<bool> is_true;
+    bool believes_most() const;
+  };
+  Pass drive_again(std::unique_ptr<Navigator> navigator) const;
   void move_state();
   void settle_at_end();
 

@@ -12,9 +12,6 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-/// A noise model is off by a factor of ten now and then, the errors of a consumer IMU in curves by
-/// more; the prior falls as 1 / scale.
-constexpr double kLargestScale = 512;
 constexpr double kLogOutlier = -4.6;  ///< one fix in a hundred
 constexpr double kLogOffset = -4.6;   ///< one return in a hundred
 constexpr double kOffsetOdds = 100;   ///< of the posterior
@@ -35,9 +32,11 @@ double log_density_of_error(const Vector3d& value, const Matrix3d& covariance) {
 
 }  // namespace
 
-bool is_likely(const Innovation& innovation) {
-  return log_density(innovation.value_n, innovation.covariance) >=
-         kLogOutlier + log_density_of_error(innovation.value_n, innovation.covariance);
+FixLikelihood likelihood_of(const Innovation& innovation) {
+  const double true_fix = log_density(innovation.value_n, innovation.covariance);
+  const double outlier =
+      kLogOutlier + log_density_of_error(innovation.value_n, innovation.covariance);
+  return {true_fix >= outlier, std::max(true_fix, outlier)};
 }
 
 ReturnTrial::ReturnTrial(const Navigator& navigator, const GnssFix& first, double level)
@@ -75,13 +74,10 @@ void ReturnTrial::add(const GnssFix& fix) {
 }
 
 void ReturnTrial::try_fix(Hypothesis& h, const GnssFix& fix) {
-  const Innovation innovation = h.navigator->innovation(fix);
-  const double true_fix = log_density(innovation.value_n, innovation.covariance);
-  const double outlier =
-      kLogOutlier + log_density_of_error(innovation.value_n, innovation.covariance);
-  h.used.push_back(true_fix >= outlier);
-  h.log_probability += std::max(true_fix, outlier);
-  if (h.used.back()) h.navigator->update(fix);
+  const FixLikelihood likelihood = likelihood_of(h.navigator->innovation(fix));
+  h.used.push_back(likelihood.is_true);
+  h.log_probability += likelihood.log_density;
+  if (likelihood.is_true) h.navigator->update(fix);
 }
 
 bool ReturnTrial::is_over() const {

@@ -10,9 +10,17 @@
 
 namespace foucault {
 
-/// Whether a fix of this innovation is more likely true than an outlier, of which there is one in a
-/// hundred.
-bool is_likely(const Innovation& innovation);
+/// A fix is true, or an outlier, of which there is one in a hundred: which is likelier, and how
+/// likely that is.
+struct FixLikelihood {
+  bool is_true = false;
+  double log_density = 0;
+};
+FixLikelihood likelihood_of(const Innovation& innovation);
+
+/// A noise model is off by a factor of ten now and then, the errors of a consumer IMU in curves by
+/// more. The prior of a scale falls as 1 / scale.
+constexpr double kLargestScale = 512;
 
 /// What the first fixes after an outage say: is the prediction as good as its covariance, worse by
 /// some factor, or are the fixes in error?
