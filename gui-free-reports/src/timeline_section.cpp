@@ -98,7 +98,8 @@ std::string rejection_text(const RunData& data) {
   std::vector<std::string> kinds;
   for (const FixVerdict verdict : kRejections) {
     const size_t count = count_of(data, verdict);
-    if (count > 0 && verdict != FixVerdict::corrected) kinds.push_back(fmt::format("{} {}", count, short_name(verdict)));
+    if (count > 0 && verdict != FixVerdict::corrected)
+      kinds.push_back(fmt::format("{} {}", count, short_name(verdict)));
   }
   const size_t rejected = rejected_fixes(data);
   return fmt::format("{} of {} rejected ({})", rejected, plural(fixes(data), "fix", "fixes"),

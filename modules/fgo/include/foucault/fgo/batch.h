@@ -93,9 +93,9 @@ class BatchRecorder final : public Navigator, public Recording {
   PreintegrationModel model_;
   ImuNoise noise_;
 
-  std::optional<LocalFrame> frame_;  ///< at the first start
-  std::vector<BatchChain> chains_;   ///< one a start
-  std::vector<Passage> passages_;    ///< one a node, all chains
+  std::optional<LocalFrame> frame_;          ///< at the first start
+  std::vector<BatchChain> chains_;           ///< one a start
+  std::vector<Passage> passages_;            ///< one a node, all chains
   std::optional<Preintegrator> integrator_;  ///< from the newest node on
   ImuInterval open_;
   EarthModel earth_;
