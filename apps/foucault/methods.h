@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "foucault/core/interfaces.h"
+#include "foucault/state/interfaces.h"
 #include "foucault/core/profile.h"
 #include "settings.h"
 

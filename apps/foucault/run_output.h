@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "console.h"
-#include "foucault/core/interfaces.h"
+#include "foucault/state/interfaces.h"
 #include "foucault/evaluation/reference_error.h"
 #include "foucault/evaluation/run_metrics.h"
 #include "foucault/reports/run_report.h"

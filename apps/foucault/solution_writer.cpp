@@ -6,8 +6,8 @@
 #include <cmath>
 #include <iterator>
 
-#include "foucault/core/state.h"
-#include "foucault/core/vehicle_attitude.h"
+#include "foucault/state/blocks.h"
+#include "foucault/state/vehicle_attitude.h"
 #include "units.h"
 
 namespace foucault::app {

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "foucault/core/interfaces.h"
+#include "foucault/state/interfaces.h"
 #include "foucault/geodesy/local_frame.h"
 #include "text_file.h"
 #include "track_kml.h"

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "foucault/core/state.h"
+#include "foucault/state/blocks.h"
 #include "units.h"
 
 namespace foucault::app {

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "foucault/core/result.h"
+#include "foucault/state/result.h"
 #include "text_file.h"
 
 namespace foucault::app {

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "foucault/core/interfaces.h"
+#include "foucault/state/interfaces.h"
 #include "foucault/rawlog/import.h"
 #include "foucault/rawlog/rawlog_writer.h"
 #include "text_table.h"

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "foucault/core/interfaces.h"
+#include "foucault/state/interfaces.h"
 #include "foucault/inertial/imu_noise.h"
 
 namespace foucault::benchmarks {

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "foucault/core/so3.h"
-#include "foucault/core/state.h"
+#include "foucault/state/blocks.h"
 #include "foucault/core/time.h"
 #include "foucault/geodesy/local_frame.h"
 

@@ -5,7 +5,7 @@
 #include <map>
 #include <utility>
 
-#include "foucault/core/state.h"
+#include "foucault/state/blocks.h"
 
 namespace foucault {
 namespace {

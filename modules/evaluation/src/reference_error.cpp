@@ -7,7 +7,7 @@
 
 #include "foucault/core/so3.h"
 #include "foucault/core/time.h"
-#include "foucault/core/vehicle_attitude.h"
+#include "foucault/state/vehicle_attitude.h"
 #include "foucault/geodesy/local_frame.h"
 
 namespace foucault {

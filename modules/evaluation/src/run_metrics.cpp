@@ -5,9 +5,9 @@
 #include <utility>
 
 #include "foucault/core/so3.h"
-#include "foucault/core/state.h"
+#include "foucault/state/blocks.h"
 #include "foucault/core/time.h"
-#include "foucault/core/vehicle_attitude.h"
+#include "foucault/state/vehicle_attitude.h"
 
 namespace foucault {
 namespace {

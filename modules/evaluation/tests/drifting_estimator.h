@@ -4,7 +4,7 @@
 #include <optional>
 #include <variant>
 
-#include "foucault/core/interfaces.h"
+#include "foucault/state/interfaces.h"
 #include "foucault/core/time.h"
 #include "foucault/geodesy/local_frame.h"
 

@@ -11,7 +11,7 @@
 #include "course_finder.h"
 #include "foucault/core/error.h"
 #include "foucault/core/time.h"
-#include "foucault/core/vehicle_attitude.h"
+#include "foucault/state/vehicle_attitude.h"
 #include "foucault/geodesy/local_frame.h"
 #include "initial_state.h"
 #include "moving_alignment.h"

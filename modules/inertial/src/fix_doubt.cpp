@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "foucault/core/state.h"
+#include "foucault/state/blocks.h"
 #include "foucault/core/time.h"
 #include "foucault/geodesy/local_frame.h"
 #include "foucault/inertial/increments.h"

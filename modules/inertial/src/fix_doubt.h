@@ -11,7 +11,7 @@
 
 #include "fix_judge.h"
 #include "foucault/core/measurement.h"
-#include "foucault/core/result.h"
+#include "foucault/state/result.h"
 #include "foucault/inertial/navigator.h"
 #include "return_trial.h"
 

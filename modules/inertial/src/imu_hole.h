@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "foucault/core/measurement.h"
-#include "foucault/core/result.h"
+#include "foucault/state/result.h"
 #include "foucault/core/time.h"
 #include "foucault/inertial/navigation_run.h"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "foucault/core/result.h"
+#include "foucault/state/result.h"
 
 namespace foucault {
 

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "foucault/core/measurement.h"
-#include "foucault/core/result.h"
+#include "foucault/state/result.h"
 #include "foucault/inertial/navigator.h"
 
 namespace foucault {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "foucault/core/measurement.h"
-#include "foucault/core/state.h"
+#include "foucault/state/blocks.h"
 #include "foucault/inertial/navigator.h"
 
 namespace foucault {

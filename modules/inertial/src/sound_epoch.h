@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "foucault/core/result.h"
+#include "foucault/state/result.h"
 
 namespace foucault {
 

@@ -6,9 +6,9 @@
 #include <random>
 #include <vector>
 
-#include "foucault/core/interfaces.h"
+#include "foucault/state/interfaces.h"
 #include "foucault/core/measurement.h"
-#include "foucault/core/result.h"
+#include "foucault/state/result.h"
 #include "foucault/core/so3.h"
 #include "foucault/core/time.h"
 #include "foucault/geodesy/local_frame.h"

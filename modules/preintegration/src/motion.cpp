@@ -173,26 +173,6 @@ Matrix15d jacobian_x1(const Terms& t, const EarthModel& earth) {
 
 }  // namespace
 
-NodeState boxplus(const NodeState& x, const Vector15d& d) {
-  NodeState y;
-  y.p_w_b = x.p_w_b + d.segment<3>(kPosition);
-  y.v_w_b = x.v_w_b + d.segment<3>(kVelocity);
-  y.q_w_b = (x.q_w_b * so3::exp(d.segment<3>(kAttitude))).normalized();
-  y.bias.gyro = x.bias.gyro + d.segment<3>(kGyroBias);
-  y.bias.accel = x.bias.accel + d.segment<3>(kAccelBias);
-  return y;
-}
-
-Vector15d boxminus(const NodeState& y, const NodeState& x) {
-  Vector15d d;
-  d.segment<3>(kPosition) = y.p_w_b - x.p_w_b;
-  d.segment<3>(kVelocity) = y.v_w_b - x.v_w_b;
-  d.segment<3>(kAttitude) = so3::log(x.q_w_b.conjugate() * y.q_w_b);
-  d.segment<3>(kGyroBias) = y.bias.gyro - x.bias.gyro;
-  d.segment<3>(kAccelBias) = y.bias.accel - x.bias.accel;
-  return d;
-}
-
 MotionResidual motion_residual(const NodeState& x0, const NodeState& x1, const Preintegration& pre,
                                const EarthModel& earth) {
   const Terms t = evaluate(x0, x1, pre, earth);

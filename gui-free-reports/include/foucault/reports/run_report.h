@@ -5,8 +5,8 @@
 #include <string>
 
 #include "foucault/core/consistency.h"
-#include "foucault/core/interfaces.h"
-#include "foucault/core/result.h"
+#include "foucault/state/interfaces.h"
+#include "foucault/state/result.h"
 #include "foucault/reports/report_page.h"
 
 namespace foucault::reports {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "foucault/core/config.h"
-#include "foucault/core/interfaces.h"
+#include "foucault/state/interfaces.h"
 
 /// The YAML mapping of the importers `csv` and `rtklib`: names files, columns, units, axes and
 /// clocks of a recording.

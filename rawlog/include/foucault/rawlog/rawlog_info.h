@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "foucault/core/interfaces.h"
+#include "foucault/state/interfaces.h"
 #include "foucault/core/measurement.h"
 
 namespace foucault {

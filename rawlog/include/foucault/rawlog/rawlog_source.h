@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "foucault/core/config.h"
-#include "foucault/core/interfaces.h"
+#include "foucault/state/interfaces.h"
 #include "foucault/inertial/imu_noise.h"
 
 namespace foucault {

@@ -5,7 +5,7 @@
 #include <string>
 #include <variant>
 
-#include "foucault/core/interfaces.h"
+#include "foucault/state/interfaces.h"
 #include "foucault/core/measurement.h"
 #include "foucault/inertial/increments.h"
 

@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-#include "foucault/core/state.h"
+#include "foucault/state/blocks.h"
 #include "foucault/inertial/imu_noise.h"
 #include "foucault/inertial/strapdown.h"
 

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "foucault/core/consistency.h"
-#include "foucault/core/interfaces.h"
-#include "foucault/core/result.h"
+#include "foucault/state/interfaces.h"
+#include "foucault/state/result.h"
 
 /// Whether errors are as large, and as random, as their covariances say.
 namespace foucault {

@@ -10,7 +10,7 @@
 #include <optional>
 #include <vector>
 
-#include "foucault/core/result.h"
+#include "foucault/state/result.h"
 #include "foucault/evaluation/outage.h"
 #include "foucault/evaluation/return_error.h"
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "foucault/core/result.h"
+#include "foucault/state/result.h"
 
 namespace foucault {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "foucault/core/error.h"
-#include "foucault/core/interfaces.h"
+#include "foucault/state/interfaces.h"
 #include "foucault/evaluation/drift_table.h"
 #include "foucault/evaluation/error_track.h"
 #include "foucault/evaluation/outage_run.h"

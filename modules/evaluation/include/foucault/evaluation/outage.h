@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "foucault/core/config.h"
-#include "foucault/core/interfaces.h"
+#include "foucault/state/interfaces.h"
 
 /// Simulated GNSS outages: fixes are withheld from an estimator, which knows nothing of it.
 namespace foucault {

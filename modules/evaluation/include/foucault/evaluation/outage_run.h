@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "foucault/core/interfaces.h"
+#include "foucault/state/interfaces.h"
 #include "foucault/evaluation/drift.h"
 #include "foucault/evaluation/outage.h"
 #include "foucault/evaluation/reference_error.h"

@@ -3,8 +3,8 @@
 #include <deque>
 #include <functional>
 
-#include "foucault/core/interfaces.h"
-#include "foucault/core/result.h"
+#include "foucault/state/interfaces.h"
+#include "foucault/state/result.h"
 
 namespace foucault {
 

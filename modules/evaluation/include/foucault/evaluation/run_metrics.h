@@ -5,8 +5,8 @@
 #include <limits>
 #include <optional>
 
-#include "foucault/core/interfaces.h"
-#include "foucault/core/result.h"
+#include "foucault/state/interfaces.h"
+#include "foucault/state/result.h"
 #include "foucault/evaluation/consistency.h"
 #include "foucault/evaluation/trust.h"
 

@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "foucault/core/consistency.h"
-#include "foucault/core/result.h"
+#include "foucault/state/result.h"
 
 /// Whether a run can be believed, judged from what was kept: the innovations of used fixes and the
 /// states that were given out. How many fixes were rejected does not matter.

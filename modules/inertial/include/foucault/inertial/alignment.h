@@ -5,8 +5,8 @@
 #include <string>
 
 #include "foucault/core/config.h"
-#include "foucault/core/interfaces.h"
-#include "foucault/core/result.h"
+#include "foucault/state/interfaces.h"
+#include "foucault/state/result.h"
 #include "foucault/inertial/imu_noise.h"
 
 namespace foucault {

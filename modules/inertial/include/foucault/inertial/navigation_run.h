@@ -9,7 +9,7 @@
 #include <variant>
 
 #include "foucault/core/config.h"
-#include "foucault/core/interfaces.h"
+#include "foucault/state/interfaces.h"
 #include "foucault/inertial/alignment.h"
 #include "foucault/inertial/navigator.h"
 

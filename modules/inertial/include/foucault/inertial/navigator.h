@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "foucault/core/measurement.h"
-#include "foucault/core/result.h"
+#include "foucault/state/result.h"
 
 namespace foucault {
 

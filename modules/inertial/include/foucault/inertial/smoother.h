@@ -4,7 +4,7 @@
 #include <variant>
 #include <vector>
 
-#include "foucault/core/interfaces.h"
+#include "foucault/state/interfaces.h"
 #include "foucault/inertial/navigation_run.h"
 #include "foucault/inertial/strapdown.h"
 

@@ -3,23 +3,11 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-#include "foucault/core/state.h"
 #include "foucault/preintegration/earth.h"
 #include "foucault/preintegration/preintegrator.h"
+#include "foucault/state/nav_state.h"
 
 namespace foucault {
-
-/// State of a node of the graph, paper (47), in w.
-struct NodeState {
-  Eigen::Vector3d p_w_b = Eigen::Vector3d::Zero();  ///< [m]
-  Eigen::Vector3d v_w_b = Eigen::Vector3d::Zero();  ///< [m/s]
-  Eigen::Quaterniond q_w_b = Eigen::Quaterniond::Identity();
-  ImuBias bias;
-};
-
-/// x (+) d and y (-) x in the order of error_state, attitude on the right: (x (+) d) (-) x = d.
-NodeState boxplus(const NodeState& x, const Vector15d& d);
-Vector15d boxminus(const NodeState& y, const NodeState& x);
 
 /// Residual (49) of an interval from x0 to x1 and its Jacobians by the tangents of both.
 /// Rows: position [m], velocity [m/s], attitude [rad] in b_i(k-1) resp. b(t_k), bias changes.

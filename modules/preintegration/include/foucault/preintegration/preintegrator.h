@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "foucault/core/measurement.h"
-#include "foucault/core/state.h"
+#include "foucault/state/blocks.h"
 #include "foucault/inertial/imu_noise.h"
 
 namespace foucault {

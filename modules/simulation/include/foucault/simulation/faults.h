@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "foucault/core/interfaces.h"
+#include "foucault/state/interfaces.h"
 
 /// What goes wrong with real recordings, for simulated ones.
 namespace foucault {

@@ -4,7 +4,7 @@
 #include <Eigen/Geometry>
 
 #include "foucault/core/measurement.h"
-#include "foucault/core/state.h"
+#include "foucault/state/blocks.h"
 #include "foucault/inertial/imu_noise.h"
 #include "foucault/inertial/increments.h"
 #include "foucault/simulation/random.h"

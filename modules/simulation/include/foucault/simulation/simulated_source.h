@@ -2,8 +2,8 @@
 
 #include <optional>
 
-#include "foucault/core/interfaces.h"
-#include "foucault/core/result.h"
+#include "foucault/state/interfaces.h"
+#include "foucault/state/result.h"
 #include "foucault/inertial/imu_noise.h"
 #include "foucault/simulation/gnss_simulator.h"
 #include "foucault/simulation/imu_simulator.h"

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "foucault/core/measurement.h"
-#include "foucault/core/state.h"
+#include "foucault/state/blocks.h"
 
 /// What estimators give out, as plain values.
 namespace foucault {

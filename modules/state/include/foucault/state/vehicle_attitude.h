@@ -3,8 +3,8 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-#include "foucault/core/interfaces.h"
-#include "foucault/core/result.h"
+#include "foucault/state/interfaces.h"
+#include "foucault/state/result.h"
 #include "foucault/core/so3.h"
 
 namespace foucault {

@@ -1,4 +1,4 @@
-#include "foucault/core/vehicle_attitude.h"
+#include "foucault/state/vehicle_attitude.h"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "foucault/core/measurement.h"
-#include "foucault/core/result.h"
+#include "foucault/state/result.h"
 
 /// The three roles data walks through: Source -> Estimator -> Sink. Each streams: memory does not
 /// grow with the length of a log.

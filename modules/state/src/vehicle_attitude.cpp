@@ -1,6 +1,6 @@
-#include "foucault/core/vehicle_attitude.h"
+#include "foucault/state/vehicle_attitude.h"
 
-#include "foucault/core/state.h"
+#include "foucault/state/blocks.h"
 
 namespace foucault {
 

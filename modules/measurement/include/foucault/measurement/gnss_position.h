@@ -1,0 +1,26 @@
+#pragma once
+
+#include "foucault/core/measurement.h"
+#include "foucault/measurement/observation.h"
+
+namespace foucault {
+
+/// Position of the antenna, p + C l; paper (50).
+/// p_a = p + C exp(d) l, hence d(p_a) = dp - C [l x] d.
+class GnssPosition final : public Observation {
+ public:
+  explicit GnssPosition(const GnssFix& fix);
+
+  std::string_view name() const override { return "gnss_position"; }
+  Linearized linearize(const NavState& x, const Eigen::Vector3d& rate_b,
+                       const Layout& layout) const override;
+
+ private:
+  Geodetic antenna_;
+  Eigen::Vector3d p_b_a_;
+  Eigen::Matrix3d covariance_n_;
+};
+
+ObservationPtr gnss_position(const GnssFix& fix);
+
+}  // namespace foucault

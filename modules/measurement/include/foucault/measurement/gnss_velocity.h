@@ -1,0 +1,28 @@
+#pragma once
+
+#include "foucault/core/measurement.h"
+#include "foucault/measurement/observation.h"
+
+namespace foucault {
+
+/// Velocity of the antenna, v + C (omega x l), omega = rate_b less the gyro bias.
+/// d(v_a) = dv - C [(omega x l) x] d + C [l x] dbg. The rotation of n and of the Earth, 0.1 mm/s at
+/// a metre of lever arm, is left out.
+class GnssVelocity final : public Observation {
+ public:
+  /// Precondition: the fix has a velocity.
+  explicit GnssVelocity(const GnssFix& fix);
+
+  std::string_view name() const override { return "gnss_velocity"; }
+  Linearized linearize(const NavState& x, const Eigen::Vector3d& rate_b,
+                       const Layout& layout) const override;
+
+ private:
+  Eigen::Vector3d velocity_n_;
+  Eigen::Vector3d p_b_a_;
+  Eigen::Matrix3d covariance_n_;
+};
+
+ObservationPtr gnss_velocity(const GnssFix& fix);
+
+}  // namespace foucault

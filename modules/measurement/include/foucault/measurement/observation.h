@@ -1,0 +1,30 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <string_view>
+
+#include "foucault/state/kalman.h"
+#include "foucault/state/layout.h"
+
+namespace foucault {
+
+/// Something that was measured at one stamp, as a function of the state there. One class each; the
+/// filter, the smoothers and the graphs use it unchanged.
+class Observation {
+ public:
+  virtual ~Observation() = default;
+
+  /// Of its kind: aids.<name> in the configuration and in metrics.json.
+  virtual std::string_view name() const = 0;
+
+  /// In the local NED of x: r = measured - predicted, H = d predicted / d error, by the blocks of
+  /// `layout`, and the covariance R of what was measured. `rate_b`: mean angular rate about the
+  /// stamp as the gyroscopes measured it [rad/s], zero if unknown.
+  virtual Linearized linearize(const NavState& x, const Eigen::Vector3d& rate_b,
+                               const Layout& layout) const = 0;
+};
+
+using ObservationPtr = std::shared_ptr<const Observation>;
+
+}  // namespace foucault

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "foucault/state/blocks.h"
+
+namespace foucault {
+
+/// A slow block as it is estimated: a constant, or a first-order Gauss-Markov process.
+struct SlowBlock {
+  Block block;
+  double sigma = 0;  ///< before anything is measured, and steady state, each row
+  double tau = 0;    ///< correlation time [s]; infinite for a constant
+  int index = 0;     ///< first row among those of the slow blocks
+};
+
+/// Which blocks are estimated, and where each stands.
+class Layout {
+ public:
+  /// At the end. Throws std::invalid_argument if it is there already, or if there is no room left.
+  Layout& add(const Block& block, double sigma,
+              double tau = std::numeric_limits<double>::infinity());
+
+  const std::vector<SlowBlock>& slow() const { return slow_; }
+  int slow_size() const { return slow_size_; }
+  int size() const { return kNodeSize + slow_size_; }
+
+  /// The first row of a slow block among the slow ones; none if it is not estimated.
+  std::optional<int> slow_index(const Block& block) const;
+
+  /// Scale factors of the IMU among slow blocks that have these values; zero if not estimated.
+  ImuScale imu_scale(const SlowVector& slow) const;
+
+  /// Covariance of the slow blocks before anything is measured.
+  SlowMatrix prior() const;
+
+ private:
+  std::vector<SlowBlock> slow_;
+  int slow_size_ = 0;
+};
+
+}  // namespace foucault
