@@ -6,6 +6,7 @@
 #include "chain_problem.h"
 #include "foucault/core/profile.h"
 #include "foucault/fgo/chain.h"
+#include "foucault/measurement/gnss_position.h"
 #include "graph_noise.h"
 #include "node_epoch.h"
 
@@ -172,17 +173,15 @@ void BatchRecorder::propagate(const ImuIncrement& increment) {
   open_.increments.push_back(increment);
 }
 
-void BatchRecorder::update(const GnssFix& fix) {
+void BatchRecorder::update(const ObservationPtr& observation) {
+  const GnssFix fix = dynamic_cast<const GnssPosition&>(*observation).fix();
   mark();
-  forward_->update(fix);
+  forward_->update(observation);
   const Epoch now = forward_->epoch();
   BatchNode& node = chains_.back().nodes.back();
   node.fixes.push_back(to_local(fix, *frame_));
   node.x = to_node(now, *frame_, model_);
-  Passage& passage = passages_.back();
-  passage.filtered = {now.t_ns, now.position, now.velocity_n, now.q_n_b};
-  passage.filtered_bias = now.bias;
-  passage.p_b_a = fix.p_b_a;
+  passages_.back().filtered = now;
   begin_interval(now);
 }
 
@@ -224,8 +223,7 @@ void BatchRecorder::add_node(const Epoch& now) {
   node.t_ns = now.t_ns;
   node.x = to_node(now, *frame_, model_);
   Passage& passage = passages_.emplace_back();
-  passage.predicted = passage.filtered = {now.t_ns, now.position, now.velocity_n, now.q_n_b};
-  passage.predicted_bias = passage.filtered_bias = now.bias;
+  passage.predicted = passage.filtered = now;
   begin_interval(now);
 }
 
@@ -261,14 +259,8 @@ std::vector<SmoothedEpoch> BatchRecorder::smoothed() {
 }
 
 SmoothedEpoch BatchRecorder::smoothed_at(const Passage& passage, const Epoch& epoch) const {
-  const StrapdownState state{epoch.t_ns, epoch.position, epoch.velocity_n, epoch.q_n_b};
-  const auto error = [&](const StrapdownState& forward, const ImuBias& bias) {
-    Vector15d e;
-    e << difference(forward, state), epoch.bias.gyro - bias.gyro, epoch.bias.accel - bias.accel;
-    return e;
-  };
-  return {epoch, error(passage.predicted, passage.predicted_bias),
-          error(passage.filtered, passage.filtered_bias), passage.p_b_a};
+  return {epoch, PackedSymmetric(epoch.covariance), boxminus(epoch, passage.predicted),
+          boxminus(epoch, passage.filtered)};
 }
 
 std::unique_ptr<Estimator> make_batch_smoother(std::unique_ptr<Navigator> forward,

@@ -5,6 +5,7 @@
 #include "chain_problem.h"
 #include "foucault/core/profile.h"
 #include "foucault/core/time.h"
+#include "foucault/measurement/gnss_position.h"
 #include "graph_noise.h"
 #include "node_epoch.h"
 
@@ -88,7 +89,8 @@ WindowNavigator::Prediction WindowNavigator::prediction() const {
   return {x1, predict_covariance(x0, x1, pre, earth_, covariance_)};
 }
 
-Innovation WindowNavigator::innovation(const GnssFix& fix) const {
+Innovation WindowNavigator::innovation(const Observation& observation) const {
+  const GnssFix fix = dynamic_cast<const GnssPosition&>(observation).fix();
   const Prediction predicted = prediction();
   const LocalFix local = to_local(fix, *frame_);
   const Eigen::Matrix<double, 3, 15> H = antenna_jacobian(predicted.x, local);
@@ -102,7 +104,8 @@ Epoch WindowNavigator::epoch() const {
   return to_epoch(integrator_->t_end_ns(), now.x, now.covariance, *frame_, model_);
 }
 
-void WindowNavigator::update(const GnssFix& fix) {
+void WindowNavigator::update(const ObservationPtr& observation) {
+  const GnssFix fix = dynamic_cast<const GnssPosition&>(*observation).fix();
   if (!at_node()) {
     const Preintegration pre = measured(*integrator_, model_);
     add_node(predict(nodes_.back().x, pre, earth_), pre);

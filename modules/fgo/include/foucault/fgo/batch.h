@@ -62,8 +62,10 @@ class BatchRecorder final : public Navigator, public Recording {
 
   void start(const Epoch& initial) override;
   void propagate(const ImuIncrement& increment) override;
-  Innovation innovation(const GnssFix& fix) const override { return forward_->innovation(fix); }
-  void update(const GnssFix& fix) override;
+  Innovation innovation(const Observation& observation) const override {
+    return forward_->innovation(observation);
+  }
+  void update(const ObservationPtr& observation) override;
   void loosen(const Matrix15d& added) override;
   std::unique_ptr<Navigator> ahead(double scale) const override { return forward_->ahead(scale); }
   void hold() override;
@@ -77,9 +79,7 @@ class BatchRecorder final : public Navigator, public Recording {
  private:
   /// What the forward run had at a node.
   struct Passage {
-    StrapdownState predicted, filtered;
-    ImuBias predicted_bias, filtered_bias;
-    Eigen::Vector3d p_b_a = Eigen::Vector3d::Zero();
+    NavState predicted, filtered;
   };
 
   Matrix15d covariance_w(const Epoch& now) const;

@@ -35,8 +35,8 @@ class WindowNavigator final : public Navigator {
 
   void start(const Epoch& initial) override;
   void propagate(const ImuIncrement& increment) override;
-  Innovation innovation(const GnssFix& fix) const override;
-  void update(const GnssFix& fix) override;
+  Innovation innovation(const Observation& observation) const override;
+  void update(const ObservationPtr& observation) override;
   /// The window ends here: what it knows becomes the prior of a node at the current time.
   void loosen(const Matrix15d& added) override;
   std::unique_ptr<Navigator> ahead(double scale) const override;
