@@ -22,9 +22,10 @@ struct Corrected {
 Corrected correct(const Preintegration& pre, const ImuBias& bias) {
   const Vector3d dg = bias.gyro - pre.bias.gyro;
   const Vector3d da = bias.accel - pre.bias.accel;
-  const Vector3d shift = pre.J_dq_bg * dg;
-  return {pre.dp + pre.J_dp_bg * dg + pre.J_dp_ba * da,
-          pre.dv + pre.J_dv_bg * dg + pre.J_dv_ba * da, pre.dq * so3::exp(shift), shift};
+  const Vector3d shift = pre.by_gyro_bias.dq * dg;
+  return {pre.dp + pre.by_gyro_bias.dp * dg + pre.by_accel_bias.dp * da,
+          pre.dv + pre.by_gyro_bias.dv * dg + pre.by_accel_bias.dv * da, pre.dq * so3::exp(shift),
+          shift};
 }
 
 /// A bias of b0 at the beginning decays towards the one at which the interval was integrated.
@@ -140,20 +141,20 @@ Matrix15d jacobian_x0(const Terms& t, const Preintegration& pre, const EarthMode
   set_block(J, kPosition, kVelocity, -T * t.R0t - T * T * T / 6 * R0t_G);
   set_block(J, kPosition, kAttitude,
             so3::skew(t.p_seen) - conjugation_jacobian(gradient_b, pre.iidp));
-  set_block(J, kPosition, kGyroBias, -pre.J_dp_bg);
-  set_block(J, kPosition, kAccelBias, -pre.J_dp_ba);
+  set_block(J, kPosition, kGyroBias, -pre.by_gyro_bias.dp);
+  set_block(J, kPosition, kAccelBias, -pre.by_accel_bias.dp);
 
   set_block(J, kVelocity, kPosition, -turn_W - t.R0t * fall.velocity);
   set_block(J, kVelocity, kVelocity, -t.R0t - T * T / 2 * R0t_G);
   set_block(J, kVelocity, kAttitude,
             so3::skew(t.v_seen) - conjugation_jacobian(gradient_b, pre.idp));
-  set_block(J, kVelocity, kGyroBias, -pre.J_dv_bg);
-  set_block(J, kVelocity, kAccelBias, -pre.J_dv_ba);
+  set_block(J, kVelocity, kGyroBias, -pre.by_gyro_bias.dv);
+  set_block(J, kVelocity, kAccelBias, -pre.by_accel_bias.dv);
 
   set_block(J, kAttitude, kAttitude, -Jr_inverse * t.q_seen.toRotationMatrix().transpose());
   set_block(J, kAttitude, kGyroBias,
             -Jr_inverse * so3::exp(r_q).toRotationMatrix().transpose() *
-                so3::right_jacobian(t.z.dq_shift) * pre.J_dq_bg);
+                so3::right_jacobian(t.z.dq_shift) * pre.by_gyro_bias.dq);
 
   set_block(J, kGyroBias, kGyroBias, -pre.gyro_bias_decay * Matrix3d::Identity());
   set_block(J, kAccelBias, kAccelBias, -pre.accel_bias_decay * Matrix3d::Identity());
