@@ -60,12 +60,11 @@ Eigen::Matrix3d position_by_position(const Place& place, const Eigen::Vector3d& 
 /// Decay of the slow blocks, and what scale factors do to the motion.
 void add_slow_blocks(const MotionIntegrals& integrals, const Layout& layout, StateMatrix& a) {
   for (const SlowBlock& slow : layout.slow()) {
-    const int row = kNodeSize + slow.index;
-    a.diagonal().segment(row, slow.block.size).setConstant(-integrals.dt / slow.tau);
+    part(a.diagonal(), slow).setConstant(-integrals.dt / slow.tau);
     if (slow.block.name == block::gyro_scale.name)
-      rows_of(a, attitude).middleCols<3>(row) = -integrals.attitude_rate;
+      columns_of(rows_of(a, attitude), slow) = -integrals.attitude_rate;
     if (slow.block.name == block::accel_scale.name)
-      rows_of(a, velocity).middleCols<3>(row) = -integrals.attitude_force;
+      columns_of(rows_of(a, velocity), slow) = -integrals.attitude_force;
   }
 }
 
@@ -115,33 +114,29 @@ StateVector driving_variance(const MotionIntegrals& integrals, const ProcessNois
   part(variance, gyro_bias).setConstant(noise.imu.gyro_bias_power() * dt);
   part(variance, accel_bias).setConstant(noise.imu.accel_bias_power() * dt);
   for (const SlowBlock& slow : noise.layout.slow()) {
-    variance.segment(kNodeSize + slow.index, slow.block.size)
-        .setConstant(2 * dt / slow.tau * slow.sigma * slow.sigma);
+    part(variance, slow).setConstant(2 * dt / slow.tau * slow.sigma * slow.sigma);
   }
   return variance;
 }
 
 /// Puts the closed form of a Gauss-Markov process in the place of its series.
-void set_markov(int row, int size, double dt, const MarkovBias& process, Transition& t) {
+template <class AnyBlock>
+void set_markov(const AnyBlock& block, double dt, const MarkovBias& process, Transition& t) {
   const double variance = process.sigma * process.sigma;
-  t.phi.block(row, row, size, size).setZero();
-  t.phi.block(row, row, size, size).diagonal().setConstant(std::exp(-dt / process.tau));
-  t.q.block(row, row, size, size).setZero();
-  t.q.block(row, row, size, size)
-      .diagonal()
-      .setConstant(-std::expm1(-2 * dt / process.tau) * variance);
+  part(t.phi, block, block).setZero();
+  part(t.phi.diagonal(), block).setConstant(std::exp(-dt / process.tau));
+  part(t.q, block, block).setZero();
+  part(t.q.diagonal(), block).setConstant(-std::expm1(-2 * dt / process.tau) * variance);
 }
 
 /// The rows of position, velocity and attitude. Those of the sensors' errors below hold nothing but
 /// their decay on the diagonal, so that products come down to these rows.
-constexpr int kMotion = block::gyro_bias.offset;
-using MotionRows =
-    Eigen::Matrix<double, kMotion, Eigen::Dynamic, Eigen::ColMajor, kMotion, kMostSize>;
+using MotionRows = MotionByState;
 
 /// X times a matrix of `rows` above the diagonal `decay`.
 MotionRows times(const MotionRows& X, const MotionRows& rows, const StateVector& decay) {
-  MotionRows out(kMotion, X.cols());
-  out.noalias() = X.leftCols<kMotion>() * rows;
+  MotionRows out(kMotionSize, X.cols());
+  out.noalias() = X.leftCols<kMotionSize>() * rows;
   out.rightCols(decay.size()) += X.rightCols(decay.size()) * decay.asDiagonal();
   return out;
 }
@@ -161,7 +156,7 @@ Series series(const Powers& a, double share) {
   const double s3 = share * share * share / 6;
   Series out;
   out.rows = share * a.first + s2 * a.second + s3 * a.third;
-  out.rows.leftCols<kMotion>().diagonal().array() += 1;
+  out.rows.leftCols<kMotionSize>().diagonal().array() += 1;
   const auto d = a.decay.array();
   out.diagonal = 1 + share * d + s2 * d * d + s3 * d * d * d;
   return out;
@@ -171,8 +166,8 @@ Series series(const Powers& a, double share) {
 void add_driven(double weight, const Series& s, const StateVector& variance, StateMatrix& q) {
   const Eigen::Index rest = s.diagonal.size();
   const MotionRows driven = weight * s.rows * variance.asDiagonal();
-  q.topLeftCorner<kMotion, kMotion>().noalias() += driven * s.rows.transpose();
-  q.topRightCorner(kMotion, rest) += driven.rightCols(rest) * s.diagonal.asDiagonal();
+  q.topLeftCorner<kMotionSize, kMotionSize>().noalias() += driven * s.rows.transpose();
+  q.topRightCorner(kMotionSize, rest) += driven.rightCols(rest) * s.diagonal.asDiagonal();
 }
 
 /// Attitude errors in b: at the begin dtheta = C0' psi, at the end dtheta = C1' psi.
@@ -200,13 +195,13 @@ void MotionIntegrals::add(const ImuIncrement& increment, const Eigen::Matrix3d& 
                             std::pow(increment.extra_accel_noise_density, 2));
 }
 
-Transition transition(const MotionIntegrals& integrals, const NavState& begin,
-                      const NavState& end, const ProcessNoise& noise) {
+Transition transition(const MotionIntegrals& integrals, const NavState& begin, const NavState& end,
+                      const ProcessNoise& noise) {
   const Eigen::Vector3d v_n = 0.5 * (begin.velocity_n + end.velocity_n);
   const Place place(displaced(begin.position, 0.5 * integrals.dt * v_n, Place(begin.position)));
   const StateMatrix dynamics = mean_dynamics(integrals, place, v_n, noise);
-  const Eigen::Index rest = dynamics.rows() - kMotion;
-  Powers a{dynamics.topRows<kMotion>(), {}, {}, dynamics.diagonal().tail(rest)};
+  const Eigen::Index rest = dynamics.rows() - kMotionSize;
+  Powers a{dynamics.topRows<kMotionSize>(), {}, {}, dynamics.diagonal().tail(rest)};
   a.second = times(a.first, a.first, a.decay);
   a.third = times(a.second, a.first, a.decay);
   const Series whole = series(a, 1);
@@ -214,34 +209,34 @@ Transition transition(const MotionIntegrals& integrals, const NavState& begin,
 
   Transition t;
   t.phi = StateMatrix::Zero(dynamics.rows(), dynamics.cols());
-  t.phi.topRows<kMotion>() = whole.rows;
+  t.phi.topRows<kMotionSize>() = whole.rows;
   const StateVector variance = driving_variance(integrals, noise);
   t.q = StateMatrix::Zero(dynamics.rows(), dynamics.cols());
   add_driven(4.0 / 6, half, variance, t.q);
   add_driven(1.0 / 6, whole, variance, t.q);
   t.q.diagonal() += variance / 6;
-  t.q.bottomLeftCorner(rest, kMotion) = t.q.topRightCorner(kMotion, rest).transpose();
+  t.q.bottomLeftCorner(rest, kMotionSize) = t.q.topRightCorner(kMotionSize, rest).transpose();
 
-  set_markov(gyro_bias.offset, gyro_bias.size, integrals.dt, gyro_markov_bias(noise.imu), t);
-  set_markov(accel_bias.offset, accel_bias.size, integrals.dt, accel_markov_bias(noise.imu), t);
+  set_markov(gyro_bias, integrals.dt, gyro_markov_bias(noise.imu), t);
+  set_markov(accel_bias, integrals.dt, accel_markov_bias(noise.imu), t);
   for (const SlowBlock& slow : noise.layout.slow()) {
-    set_markov(kNodeSize + slow.index, slow.block.size, integrals.dt, {slow.sigma, slow.tau}, t);
+    set_markov(slow, integrals.dt, {slow.sigma, slow.tau}, t);
   }
   turn_attitude_to_body(begin.q_n_b.toRotationMatrix(), end.q_n_b.toRotationMatrix(), t);
   return t;
 }
 
 StateMatrix propagated(const StateMatrix& covariance, const Transition& t) {
-  const Eigen::Index rest = covariance.rows() - kMotion;
-  const MotionRows rows = t.phi.topRows<kMotion>();
+  const Eigen::Index rest = covariance.rows() - kMotionSize;
+  const MotionRows rows = t.phi.topRows<kMotionSize>();
   const StateVector decay = t.phi.diagonal().tail(rest);
-  MotionRows carried(kMotion, covariance.cols());
+  MotionRows carried(kMotionSize, covariance.cols());
   carried.noalias() = rows * covariance;
   StateMatrix next = t.q;
-  next.topLeftCorner<kMotion, kMotion>().noalias() += carried * rows.transpose();
+  next.topLeftCorner<kMotionSize, kMotionSize>().noalias() += carried * rows.transpose();
   const MotionRows cross = carried.rightCols(rest) * decay.asDiagonal();
-  next.topRightCorner(kMotion, rest) += cross;
-  next.bottomLeftCorner(rest, kMotion) += cross.transpose();
+  next.topRightCorner(kMotionSize, rest) += cross;
+  next.bottomLeftCorner(rest, kMotionSize) += cross.transpose();
   next.bottomRightCorner(rest, rest) +=
       decay.asDiagonal() * covariance.bottomRightCorner(rest, rest) * decay.asDiagonal();
   return 0.5 * (next + next.transpose());

@@ -26,8 +26,8 @@ Smoothed step_back(const RtsNode& node, const RtsNode& next, const Smoothed& nex
 
 SmoothedEpoch result_of(const RtsNode& node, const Smoothed& smoothed) {
   return {smoothed.state, PackedSymmetric(smoothed.covariance),
-          boxminus(smoothed.state, node.predicted).head<kNodeSize>(),
-          boxminus(smoothed.state, node.filtered).head<kNodeSize>()};
+          node_part(boxminus(smoothed.state, node.predicted)),
+          node_part(boxminus(smoothed.state, node.filtered))};
 }
 
 }  // namespace
