@@ -9,8 +9,8 @@ namespace {
 StateVector shrinkage(const StateMatrix& covariance, const Layout& layout) {
   StateVector factors = StateVector::Ones(layout.size());
   for (const SlowBlock& slow : layout.slow()) {
-    const StateVector variance = part(covariance.diagonal(), slow);
-    part(factors, slow) = (slow.sigma * slow.sigma / variance.array()).min(1).sqrt();
+    const StateVector sigmas = part(covariance.diagonal(), slow).cwiseMax(0).cwiseSqrt();
+    part(factors, slow) = (sigmas.array() > slow.sigma).select(slow.sigma / sigmas.array(), 1);
   }
   return factors;
 }

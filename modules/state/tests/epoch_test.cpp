@@ -86,6 +86,13 @@ TEST(WithSlowBlocks, NoneIsLessCertainThanItsPrior) {
   EXPECT_EQ(whole.slow, doubtful.slow);
 }
 
+TEST(WithSlowBlocks, TakesOneThatIsKnownExactly) {
+  Layout layout;
+  layout.add(kTwo, 0);
+  const Epoch whole = with_slow_blocks(random_epoch(7, 0), layout);
+  EXPECT_EQ(with_slow_blocks(whole, layout).covariance, whole.covariance);
+}
+
 TEST(WithSlowBlocks, LeavesANodeWhereNoneIsEstimated) {
   const Epoch node = random_epoch(4, 0);
   const Epoch same = with_slow_blocks(node, Layout{});
