@@ -11,7 +11,6 @@ namespace foucault {
 namespace {
 
 using namespace testing;
-using namespace error_state;
 
 class BatchTest : public NoisyDrive {
  protected:
@@ -33,12 +32,14 @@ class BatchTest : public NoisyDrive {
 struct ChainDrive : NoisyDrive {
   void TestBody() override {}
 
+  GraphContext context() const { return {frame_, PreintegrationModel::refined, {}}; }
+
   /// `integrated_at`: gyro bias of the preintegration. `keep`: the increments.
   BatchChain chain(double gyro_bias_sigma = 2e-4, const Vector3d& integrated_at = Vector3d::Zero(),
                    bool keep = false) {
     reseed(5);
     Epoch begin = initial(1);
-    begin.covariance.block<3, 3>(kGyroBias, kGyroBias) =
+    part(begin.covariance, block::gyro_bias, block::gyro_bias) =
         gyro_bias_sigma * gyro_bias_sigma * Matrix3d::Identity();
     NodeState x;
     x.p_w_b = frame_.to_local(begin.position);
@@ -46,7 +47,7 @@ struct ChainDrive : NoisyDrive {
     x.q_w_b = begin.q_n_b;
     x.bias = begin.bias;
     BatchChain out;
-    out.prior = prior_from_covariance(x, begin.covariance);
+    out.prior = prior_from_covariance(x, SlowVector(0), begin.covariance);
     out.nodes.push_back({0, x, {}});
     for (int k = 0; k < 5; ++k) {
       Preintegrator integrator(test_noise(), {integrated_at, x.bias.accel}, k * 1'000'000'000LL);
@@ -61,7 +62,7 @@ struct ChainDrive : NoisyDrive {
       x = predict(x, integrator.result(), wuhan_earth());
       BatchNode& node = out.nodes.emplace_back();
       node.x = x;
-      if (k != 1 && k != 2) node.fixes.push_back(to_local(fix_at(k + 1, 0.02), frame_));
+      if (k != 1 && k != 2) node.observations.push_back({gnss_position(fix_at(k + 1, 0.02))});
     }
     return out;
   }
@@ -73,24 +74,25 @@ struct Dense {
   Eigen::VectorXd gradient;
 };
 
-Dense dense(const BatchChain& chain, const std::vector<NodeState>& x) {
-  const Eigen::Index n = 15 * static_cast<Eigen::Index>(x.size());
+Dense dense(const BatchChain& chain, const GraphContext& context, const std::vector<NodeState>& x) {
+  const Eigen::Index n = kNodeSize * static_cast<Eigen::Index>(x.size());
   Dense out{Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n)};
   const auto add = [&](Eigen::Index at, const Eigen::MatrixXd& J, const Eigen::VectorXd& r) {
     out.H.block(at, at, J.cols(), J.cols()) += J.transpose() * J;
     out.gradient.segment(at, J.cols()) += J.transpose() * r;
   };
-  const PriorFactor::Linearized prior = PriorFactor(chain.prior).linearize(x[0]);
+  const SlowVector slow(0);
+  const StateRows prior = PriorFactor(chain.prior).linearize(x[0], slow);
   add(0, prior.J, prior.r);
   for (std::size_t k = 0; k < x.size(); ++k) {
-    const Eigen::Index at = 15 * static_cast<Eigen::Index>(k);
-    for (const LocalFix& fix : chain.nodes[k].fixes) {
-      const GnssFactor::Linearized z = GnssFactor(fix).linearize(x[k]);
+    const Eigen::Index at = kNodeSize * static_cast<Eigen::Index>(k);
+    for (const NodeObservation& observation : chain.nodes[k].observations) {
+      const ObservationRows z = linearize(observation, x[k], slow, context);
       add(at, z.J, z.r);
     }
     if (k + 1 == x.size()) break;
-    const MotionResidual m = chain.intervals[k].factor->linearize(x[k], x[k + 1]);
-    Eigen::MatrixXd J(15, 30);
+    const IntervalRows m = chain.intervals[k].factor->linearize(x[k], x[k + 1], slow);
+    Eigen::MatrixXd J(kNodeSize, 2 * kNodeSize);
     J << m.J_x0, m.J_x1;
     add(at, J, m.r);
   }
@@ -102,8 +104,8 @@ TEST(Batch, IsTheLeastSquaresSolutionWithItsCovariance) {
   BatchChain chain = drive.chain();
   FgoOptions options;
   options.max_iterations = 50;
-  const BatchSolution solution = solve(chain, options, PreintegrationModel::refined, test_noise());
-  const Dense normal = dense(chain, solution.x);
+  const BatchSolution solution = solve(chain, drive.context(), options, test_noise());
+  const Dense normal = dense(chain, drive.context(), solution.x);
   // In units of sigmas, so that the dense inverse keeps its digits.
   const Eigen::VectorXd scale = normal.H.diagonal().cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd scaled = scale.asDiagonal() * normal.H * scale.asDiagonal();
@@ -112,9 +114,10 @@ TEST(Batch, IsTheLeastSquaresSolutionWithItsCovariance) {
   const Eigen::VectorXd sigma = covariance.diagonal().cwiseSqrt();
   EXPECT_LT(left.cwiseQuotient(sigma).cwiseAbs().maxCoeff(), 1e-3);
   for (std::size_t k = 0; k < solution.x.size(); ++k) {
-    const Eigen::Index at = 15 * static_cast<Eigen::Index>(k);
-    const Vector15d unit = sigma.segment<15>(at).cwiseInverse();
-    const Matrix15d difference = solution.covariance_w[k] - covariance.block<15, 15>(at, at);
+    const Eigen::Index at = kNodeSize * static_cast<Eigen::Index>(k);
+    const NodeVector unit = sigma.segment<kNodeSize>(at).cwiseInverse();
+    const NodeMatrix difference =
+        NodeMatrix(solution.covariance_w[k]) - covariance.block<kNodeSize, kNodeSize>(at, at);
     EXPECT_LT((unit.asDiagonal() * difference * unit.asDiagonal()).cwiseAbs().maxCoeff(), 1e-6)
         << "node " << k;
   }
@@ -128,14 +131,14 @@ TEST(Batch, ABiasThatMovedIsIntegratedAnew) {
   options.max_iterations = 50;
   const auto solved = [&](const Vector3d& integrated_at, bool keep) {
     BatchChain chain = drive.chain(0.05, integrated_at, keep);
-    return solve(chain, options, PreintegrationModel::refined, test_noise());
+    return solve(chain, drive.context(), options, test_noise());
   };
   const BatchSolution near = solved(Vector3d::Zero(), true);
   const auto off = [&](const BatchSolution& other) {
     double worst = 0;
     for (std::size_t k = 0; k < near.x.size(); ++k) {
-      const Vector15d sigma = near.covariance_w[k].diagonal().cwiseSqrt();
-      const Vector15d difference = boxminus(other.x[k], near.x[k]).cwiseQuotient(sigma);
+      const NodeVector sigma = near.covariance_w[k].diagonal().cwiseSqrt();
+      const NodeVector difference = boxminus(other.x[k], near.x[k]).cwiseQuotient(sigma);
       worst = std::max(worst, difference.cwiseAbs().maxCoeff());
     }
     return worst;
@@ -157,7 +160,7 @@ TEST_F(BatchTest, EndsWhereAWindowOverEverythingEnds) {
   ASSERT_EQ(nodes.size(), 26u);
   const Epoch a = nodes.back().epoch;
   const Epoch b = window.epoch();
-  const Vector15d sigma = b.covariance.diagonal().cwiseSqrt();
+  const NodeVector sigma = b.covariance.diagonal().cwiseSqrt();
   EXPECT_LT((error(a) - error(b)).cwiseQuotient(sigma).cwiseAbs().maxCoeff(), 1e-2);
   EXPECT_LT(
       (a.covariance.diagonal().cwiseSqrt() - sigma).cwiseQuotient(sigma).cwiseAbs().maxCoeff(),
@@ -176,11 +179,11 @@ TEST_F(BatchTest, ErrorsInAnOutageStayWithinTheirCovarianceAndBelowForward) {
       if (second == 25) forward = batch->epoch();
     });
     const std::vector<SmoothedEpoch> nodes = batch->smoothed();
-    const Vector15d e = error(nodes[20].epoch);
+    const NodeVector e = error(nodes[20].epoch);
     nees_sum += e.dot(nodes[20].epoch.covariance.ldlt().solve(e));
     smoothed_square += error(nodes[20].epoch).head<2>().squaredNorm();
     forward_square += error(forward).head<2>().squaredNorm();
-    const Vector15d variance = nodes[25].epoch.covariance.diagonal();
+    const NodeVector variance = nodes[25].epoch.covariance.diagonal();
     EXPECT_LT(variance.head<3>().sum(), forward.covariance.diagonal().head<3>().sum());
   }
   // Sum of kRuns chi-squares of 15; 99.9 %.
@@ -236,7 +239,7 @@ TEST_F(BatchTest, LooseningBridgesAJumpOfTheState) {
       GnssFix fix = fix_at(second, 0.02);
       if (second > 10) fix.antenna = LocalFrame(fix.antenna).to_geodetic({5, 0, 0});
       if (second == 11 && loosened) {
-        Matrix15d added = Matrix15d::Zero();
+        NodeMatrix added = NodeMatrix::Zero();
         added.diagonal().head<3>().setConstant(25);
         batch->loosen(added);
       }

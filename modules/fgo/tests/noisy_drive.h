@@ -15,7 +15,6 @@ namespace foucault::testing {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
-using namespace error_state;
 
 inline constexpr double kDegree = M_PI / 180;
 inline const Geodetic kOrigin{30.45 * kDegree, 114.47 * kDegree, 20};
@@ -46,9 +45,9 @@ class NoisyDrive : public ::testing::Test {
 
   Epoch initial(double scale) {
     const NodeState x = motion_.state(0);
-    const Vector15d sigma = initial_sigma();
-    Vector15d error;
-    for (int i = 0; i < 15; ++i) error[i] = scale * sigma[i] * normal_(rng_);
+    const NodeVector sigma = initial_sigma();
+    NodeVector error;
+    for (int i = 0; i < kNodeSize; ++i) error[i] = scale * sigma[i] * normal_(rng_);
     const NodeState start = boxplus(x, error);
     Epoch epoch;
     epoch.position = frame_.to_geodetic(start.p_w_b);
@@ -59,8 +58,8 @@ class NoisyDrive : public ::testing::Test {
     return epoch;
   }
 
-  static Vector15d initial_sigma() {
-    Vector15d sigma;
+  static NodeVector initial_sigma() {
+    NodeVector sigma;
     sigma << Vector3d::Constant(0.05), Vector3d::Constant(0.05), Vector3d(5e-3, 5e-3, 2e-2),
         Vector3d::Constant(2e-4), Vector3d::Constant(1e-2);
     return sigma;
@@ -100,7 +99,7 @@ class NoisyDrive : public ::testing::Test {
     }
   }
 
-  Vector15d error(const Epoch& epoch) const {
+  NodeVector error(const Epoch& epoch) const {
     NodeState x;
     const Matrix3d R_w_n = frame_.R_w_n(epoch.position);
     x.p_w_b = frame_.to_local(epoch.position);
