@@ -21,6 +21,7 @@ NavigationRunOptions run_options(const Settings& settings) {
   NavigationRunOptions options;
   options.gnss = settings.gnss;
   options.gaps = settings.gaps;
+  options.aids = settings.aids;
   options.node_interval_s = settings.fgo.node_interval_s;
   options.rate = settings.output.epoch_rate();
   return options;
@@ -38,7 +39,8 @@ std::unique_ptr<Navigator> window(PreintegrationModel model, const Settings& set
 }
 
 std::unique_ptr<Navigator> filter(const Settings& settings) {
-  return std::make_unique<EkfNavigator>(settings.imu.noise(), settings.ekf);
+  return std::make_unique<EkfNavigator>(settings.imu.noise(), settings.calibrate.layout(),
+                                        settings.ekf);
 }
 
 template <PreintegrationModel model>
@@ -55,8 +57,8 @@ std::unique_ptr<Estimator> make_ekf(const Settings& settings, const Mounting& mo
 std::unique_ptr<Estimator> make_rts(const Settings& settings, const Mounting& mounting,
                                     Sink& sink) {
   Aligner aligner(settings.alignment, settings.imu.noise(), mounting);
-  return make_rts_smoother(settings.imu.noise(), settings.ekf, std::move(aligner),
-                           run_options(settings), sink);
+  return make_rts_smoother(settings.imu.noise(), settings.calibrate.layout(), settings.ekf,
+                           std::move(aligner), run_options(settings), sink);
 }
 
 /// The forward run of a batch.

@@ -18,9 +18,11 @@ void Settings::fields(ConfigFields& f) {
   f.section("alignment", alignment, "initial attitude");
   f.section("gnss", gnss, "which fixes are used, and how much they are trusted");
   f.section("gaps", gaps, "holes in the IMU stream");
+  f.section("aids", aids, "what is measured beside positions");
+  f.section("calibrate", calibrate, "what is estimated beside the biases");
   f.section("fgo", fgo, "factor graph: methods refined, rough, full and batch");
   f.section("batch", batch, "method batch");
-  f.section("ekf", ekf, "Kalman filter: method ekf");
+  f.section("ekf", ekf, "Kalman filter: methods ekf and rts");
   f.section("rawlog", rawlog, "what is taken from a log with several sensors");
   f.section("outages", outages, "simulated outages: commands evaluate and tune");
   f.section("output", output, "what is written");

@@ -11,6 +11,7 @@
 #include "foucault/inertial/imu_noise.h"
 #include "foucault/inertial/navigation_run.h"
 #include "foucault/rawlog/rawlog_source.h"
+#include "foucault/state/calibrate_options.h"
 
 namespace foucault::app {
 
@@ -31,6 +32,8 @@ class Settings : public Configurable {
   AlignmentOptions alignment;
   GnssOptions gnss;
   GapOptions gaps;
+  AidOptions aids;
+  CalibrateOptions calibrate;
   FgoOptions fgo;
   BatchOptions batch;
   EkfOptions ekf;

@@ -13,10 +13,6 @@
 namespace foucault::app {
 namespace {
 
-Eigen::Vector3d block_sigmas(const Epoch& epoch, int offset) {
-  return epoch.covariance.diagonal().segment<3>(offset).cwiseMax(0.0).cwiseSqrt();
-}
-
 void append(std::string& row, const Eigen::Vector3d& values, int decimals) {
   for (const double value : values)
     fmt::format_to(std::back_inserter(row), ",{:.{}f}", value, decimals);
@@ -51,11 +47,11 @@ std::string csv_row(const Epoch& epoch, const Mounting& mounting) {
   append(row, Eigen::Vector3d(euler.roll, euler.pitch, euler.heading) * kDegrees, 7);
   append(row, epoch.bias.gyro * kDegreesPerHour, 5);
   append(row, epoch.bias.accel * kMilligals, 4);
-  append_sigmas(row, block_sigmas(epoch, error_state::kPosition));
-  append_sigmas(row, block_sigmas(epoch, error_state::kVelocity));
+  append_sigmas(row, epoch.sigma_of(block::position));
+  append_sigmas(row, epoch.sigma_of(block::velocity));
   append_sigmas(row, attitude.sigma * kDegrees);
-  append_sigmas(row, block_sigmas(epoch, error_state::kGyroBias) * kDegreesPerHour);
-  append_sigmas(row, block_sigmas(epoch, error_state::kAccelBias) * kMilligals);
+  append_sigmas(row, epoch.sigma_of(block::gyro_bias) * kDegreesPerHour);
+  append_sigmas(row, epoch.sigma_of(block::accel_bias) * kMilligals);
   row += '\n';
   return row;
 }

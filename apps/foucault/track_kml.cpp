@@ -30,8 +30,7 @@ constexpr std::array<AccuracyClass, 4> kClasses{
 
 /// sqrt of the trace of the horizontal block [m].
 double horizontal_sigma(const Epoch& epoch) {
-  return std::sqrt(epoch.covariance(error_state::kPosition, error_state::kPosition) +
-                   epoch.covariance(error_state::kPosition + 1, error_state::kPosition + 1));
+  return epoch.sigma_of(block::position).head<2>().norm();
 }
 
 std::size_t class_of(double sigma) {

@@ -24,10 +24,6 @@ constexpr size_t kMostStretches = 1000;
 constexpr double kSemiMajorAxis = 6378137.0;       // WGS-84 [m]
 constexpr double kFlattening = 1 / 298.257223563;  // WGS-84
 
-Eigen::Vector3d sigma_of(const Matrix15d& covariance, int block) {
-  return covariance.diagonal().segment<3>(block).cwiseMax(0).cwiseSqrt();
-}
-
 Eigen::Vector3d sigma_of(const Eigen::Matrix3d& covariance) {
   return covariance.diagonal().cwiseMax(0).cwiseSqrt();
 }
@@ -194,12 +190,12 @@ void RunData::add(const Epoch& epoch) {
 
   const Eigen::Vector3d p = place(epoch.position);
   track.add(t, {p.x(), p.y()});
-  position.add(t, p, sigma_of(epoch.covariance, error_state::kPosition));
-  velocity.add(t, epoch.velocity_n, sigma_of(epoch.covariance, error_state::kVelocity));
+  position.add(t, p, epoch.sigma_of(block::position));
+  velocity.add(t, epoch.velocity_n, epoch.sigma_of(block::velocity));
   gyro_bias.add(t, kDegreesPerHour * epoch.bias.gyro,
-                kDegreesPerHour * sigma_of(epoch.covariance, error_state::kGyroBias));
+                kDegreesPerHour * epoch.sigma_of(block::gyro_bias));
   accel_bias.add(t, kMilligal * epoch.bias.accel,
-                 kMilligal * sigma_of(epoch.covariance, error_state::kAccelBias));
+                 kMilligal * epoch.sigma_of(block::accel_bias));
 
   const VehicleAttitude vehicle = vehicle_attitude(epoch, mounting_);
   so3::Euler euler = vehicle.euler;
@@ -271,10 +267,9 @@ void RunData::add(const Notice& notice) {
 
 void RunData::add(const Epoch& epoch, const ReferenceError& error) {
   const double t = seconds(error.t_ns);
-  const Matrix15d& covariance = epoch.covariance;
-  position_error.add(t, error.position_n, sigma_of(covariance, error_state::kPosition));
+  position_error.add(t, error.position_n, epoch.sigma_of(block::position));
   if (error.velocity_n) {
-    velocity_error.add(t, *error.velocity_n, sigma_of(covariance, error_state::kVelocity));
+    velocity_error.add(t, *error.velocity_n, epoch.sigma_of(block::velocity));
   }
   if (error.euler) {
     attitude_error.add(t, kDegrees * *error.euler,

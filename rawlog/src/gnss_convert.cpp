@@ -341,15 +341,13 @@ NmeaSigma nmea_sigma(FixQuality quality, std::optional<double> hdop) {
 
 namespace rawlog {
 
-std::optional<GnssFix> decode_fix(const mrpt::obs::CObservationGPS& gps, int64_t t_ns,
-                                  bool with_velocity) {
+std::optional<GnssFix> decode_fix(const mrpt::obs::CObservationGPS& gps, int64_t t_ns) {
   std::optional<GnssFix> fix = position_of(gps);
   if (!fix) return std::nullopt;
   fix->t_ns = t_ns;
   add_covariance_enu(gps, *fix);
   const auto* pzs = message<gnss::Message_TOPCON_PZS>(gps);
   if (pzs != nullptr) add_pzs_position_covariance(*pzs, *fix);
-  if (!with_velocity) return fix;
   if (pzs != nullptr && pzs->hasCartesianPosVel) {
     add_pzs_velocity(*pzs, *fix);
   } else {

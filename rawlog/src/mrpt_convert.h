@@ -39,9 +39,9 @@ Eigen::Quaterniond flip_both(const Eigen::Quaterniond& q);
 
 void encode_imu(const ImuSample& sample, mrpt::obs::CObservationIMU& imu);
 
-/// The position that a GPS record holds, without lever arm; none if it holds none.
-std::optional<GnssFix> decode_fix(const mrpt::obs::CObservationGPS& gps, int64_t t_ns,
-                                  bool with_velocity);
+/// The position that a GPS record holds, and its velocity if there is one, without lever arm; none
+/// if it holds no position.
+std::optional<GnssFix> decode_fix(const mrpt::obs::CObservationGPS& gps, int64_t t_ns);
 /// Messages of a fix; stamp, label and pose are the caller's.
 void encode_fix(const GnssFix& fix, mrpt::obs::CObservationGPS& gps);
 

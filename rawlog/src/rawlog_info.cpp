@@ -200,7 +200,7 @@ class Collector {
     if (rawlog::decode_reference(gps, 0)) return;
     Receiver& receiver = receivers_[gps.sensorLabel];
     receiver.info.label = gps.sensorLabel;
-    const std::optional<GnssFix> fix = rawlog::decode_fix(gps, t_ns, true);
+    const std::optional<GnssFix> fix = rawlog::decode_fix(gps, t_ns);
     if (!fix) {
       ++receiver.info.without_position;
       return;

@@ -30,7 +30,7 @@ void RawlogOptions::fields(ConfigFields& f) {
          "sensor label of the GNSS receiver; empty: the first one with a position");
   f.text("reference_label", reference_label, {}, "sensor label of the reference trajectory");
   f.number("reorder_s", reorder_s, {0, kLongestReorder}, "records may come this late [s]");
-  f.flag("gnss_velocity", gnss_velocity, "read the receiver's velocities");
+  f.replaced("gnss_velocity", "aids.gnss_velocity (on | off), or aids.mode (none)");
 }
 
 namespace {
@@ -108,7 +108,7 @@ class OverviewScan {
   }
 
   void take_fix(const mrpt::obs::CObservationGPS& gps) {
-    const std::optional<GnssFix> fix = rawlog::decode_fix(gps, 0, false);
+    const std::optional<GnssFix> fix = rawlog::decode_fix(gps, 0);
     if (!fix || !is_position(fix->antenna)) return;
     overview_.gnss_label = gps.sensorLabel;
     overview_.antenna = rawlog::from_mrpt(gps.sensorPose);
@@ -384,7 +384,7 @@ void RawlogSource::Impl::take_gps(const mrpt::obs::CObservationGPS& gps, int64_t
     return take_reference(*pose, gps.sensorPose, kGps);
   }
   if (gps.sensorLabel != overview_.gnss_label) return skip(kGps, "another label");
-  std::optional<GnssFix> fix = rawlog::decode_fix(gps, t_ns, options_.gnss_velocity);
+  std::optional<GnssFix> fix = rawlog::decode_fix(gps, t_ns);
   if (!fix) return skip(kGps, "no position");
   fix->p_b_a = lever_arm_to(rawlog::from_mrpt(gps.sensorPose));
   if (!finite(fix->antenna) || !fix->position_covariance.allFinite() || !fix->p_b_a.allFinite()) {

@@ -175,17 +175,6 @@ TEST_F(Observations, VtgGivesTheVelocityBesideGga) {
   EXPECT_NEAR(fix.velocity_n->x(), -18.52, 1e-9);
 }
 
-TEST_F(Observations, VelocityCanBeLeftOut) {
-  auto gps = gps_at(kBegin);
-  gnss::Message_NMEA_VTG vtg;
-  vtg.fields.ground_speed_knots = 36;
-  gps.setMsg(vtg);
-  RawlogOptions options;
-  options.gnss_velocity = false;
-  RawlogSource source(log_with({&gps}), SampleKind::interval_mean, options);
-  EXPECT_FALSE(all<GnssFix>(source).at(0).velocity_n);
-}
-
 TEST_F(Observations, PzsTurnsItsCovarianceAndVelocityFromEcef) {
   auto gps = gps_at(kBegin);
   gps.messages.clear();

@@ -320,6 +320,11 @@ class Reader : public ConfigFields {
     value = read;
   }
 
+  void replaced(std::string_view key, std::string_view by) override {
+    if (const Entry* entry = take(key))
+      fail(entry->key_node, key, fmt::format("is set by {} now", by));
+  }
+
   void section(std::string_view key, Configurable& inner, std::string_view) override {
     const Entry* entry = take(key);
     if (!entry) return;

@@ -3,15 +3,16 @@
 #include <cmath>
 
 #include "foucault/core/so3.h"
+#include "foucault/geodesy/place.h"
 
 namespace foucault::ekf {
 namespace {
 
-using error_state::kAccelBias;
-using error_state::kAttitude;
-using error_state::kGyroBias;
-using error_state::kPosition;
-using error_state::kVelocity;
+using block::accel_bias;
+using block::attitude;
+using block::gyro_bias;
+using block::position;
+using block::velocity;
 
 /// Change of omega_ie_n by the position error [rad/s/m]: it depends on the latitude alone.
 Eigen::Matrix3d earth_rate_by_position(const Place& place) {
@@ -56,12 +57,24 @@ Eigen::Matrix3d position_by_position(const Place& place, const Eigen::Vector3d& 
   return m;
 }
 
+/// Decay of the slow blocks, and what scale factors do to the motion.
+void add_slow_blocks(const MotionIntegrals& integrals, const Layout& layout, StateMatrix& a) {
+  for (const SlowBlock& slow : layout.slow()) {
+    const int row = kNodeSize + slow.index;
+    a.diagonal().segment(row, slow.block.size).setConstant(-integrals.dt / slow.tau);
+    if (slow.block.name == block::gyro_scale.name)
+      rows_of(a, attitude).middleCols<3>(row) = -integrals.attitude_rate;
+    if (slow.block.name == block::accel_scale.name)
+      rows_of(a, velocity).middleCols<3>(row) = -integrals.attitude_force;
+  }
+}
+
 /// Mean dynamics over the interval times its length, with the attitude error psi = C dtheta in n.
 ///   psi' = -omega_in x psi - C dbg - C diag(omega) dsg - d(omega_in)
 ///   dv'  = -(C f) x psi - C dba - C diag(f) dsa - (2 omega_ie + omega_en) x dv
 ///          + v x (2 d(omega_ie) + d(omega_en)) + dg
-Matrix mean_dynamics(const MotionIntegrals& integrals, const Place& place,
-                     const Eigen::Vector3d& v_n, const ProcessNoise& noise) {
+StateMatrix mean_dynamics(const MotionIntegrals& integrals, const Place& place,
+                          const Eigen::Vector3d& v_n, const ProcessNoise& noise) {
   const double dt = integrals.dt;
   const Eigen::Vector3d omega_ie_n = place.omega_ie_n;
   const Eigen::Vector3d omega_en_n = place.omega_en_n(v_n);
@@ -69,65 +82,64 @@ Matrix mean_dynamics(const MotionIntegrals& integrals, const Place& place,
   const Eigen::Matrix3d transport_by_p = transport_rate_by_position(place, v_n);
   const Eigen::Matrix3d transport_by_v = transport_rate_by_velocity(place);
 
-  Matrix a = Matrix::Zero(noise.size(), noise.size());
-  a.block<3, 3>(kPosition, kPosition) = dt * position_by_position(place, v_n);
-  a.block<3, 3>(kPosition, kVelocity) = dt * Eigen::Matrix3d::Identity();
+  const int size = noise.layout.size();
+  StateMatrix a = StateMatrix::Zero(size, size);
+  part(a, position, position) = dt * position_by_position(place, v_n);
+  part(a, position, velocity) = dt * Eigen::Matrix3d::Identity();
 
-  a.block<3, 3>(kVelocity, kPosition) = dt * (so3::skew(v_n) * (2 * earth_by_p + transport_by_p));
-  a(kVelocity + 2, kPosition + 2) +=
+  part(a, velocity, position) = dt * (so3::skew(v_n) * (2 * earth_by_p + transport_by_p));
+  part(a, velocity, position)(2, 2) +=
       dt * 2 * place.gravity / std::sqrt(place.radius_north * place.radius_east);
-  a.block<3, 3>(kVelocity, kVelocity) =
+  part(a, velocity, velocity) =
       dt * (so3::skew(v_n) * transport_by_v - so3::skew(2 * omega_ie_n + omega_en_n));
-  a.block<3, 3>(kVelocity, kAttitude) = -so3::skew(integrals.specific_velocity_n);
-  a.block<3, 3>(kVelocity, kAccelBias) = -integrals.attitude;
+  part(a, velocity, attitude) = -so3::skew(integrals.specific_velocity_n);
+  part(a, velocity, accel_bias) = -integrals.attitude;
 
-  a.block<3, 3>(kAttitude, kPosition) = -dt * (earth_by_p + transport_by_p);
-  a.block<3, 3>(kAttitude, kVelocity) = -dt * transport_by_v;
-  a.block<3, 3>(kAttitude, kAttitude) = -dt * so3::skew(omega_ie_n + omega_en_n);
-  a.block<3, 3>(kAttitude, kGyroBias) = -integrals.attitude;
+  part(a, attitude, position) = -dt * (earth_by_p + transport_by_p);
+  part(a, attitude, velocity) = -dt * transport_by_v;
+  part(a, attitude, attitude) = -dt * so3::skew(omega_ie_n + omega_en_n);
+  part(a, attitude, gyro_bias) = -integrals.attitude;
 
-  a.diagonal().segment<3>(kGyroBias).setConstant(-dt / gyro_markov_bias(noise.imu).tau);
-  a.diagonal().segment<3>(kAccelBias).setConstant(-dt / accel_markov_bias(noise.imu).tau);
-  if (noise.with_scale) {
-    a.block<3, 3>(kAttitude, kGyroScale) = -integrals.attitude_rate;
-    a.block<3, 3>(kVelocity, kAccelScale) = -integrals.attitude_force;
-    a.diagonal().segment<6>(kGyroScale).setConstant(-dt / noise.scale_tau);
-  }
+  part(a.diagonal(), gyro_bias).setConstant(-dt / gyro_markov_bias(noise.imu).tau);
+  part(a.diagonal(), accel_bias).setConstant(-dt / accel_markov_bias(noise.imu).tau);
+  add_slow_blocks(integrals, noise.layout, a);
   return a;
 }
 
 /// Variance that white noise drives into the state during the interval [unit^2].
-Vector driving_variance(const MotionIntegrals& integrals, const ProcessNoise& noise) {
+StateVector driving_variance(const MotionIntegrals& integrals, const ProcessNoise& noise) {
   const double dt = integrals.dt;
-  Vector variance = Vector::Zero(noise.size());
-  variance.segment<3>(kVelocity).setConstant(integrals.accel_variance);
-  variance.segment<3>(kAttitude).setConstant(integrals.gyro_variance);
-  variance.segment<3>(kGyroBias).setConstant(noise.imu.gyro_bias_power() * dt);
-  variance.segment<3>(kAccelBias).setConstant(noise.imu.accel_bias_power() * dt);
-  if (noise.with_scale) {
-    const double rate = 2 * dt / noise.scale_tau;
-    variance.segment<3>(kGyroScale).setConstant(rate * std::pow(noise.gyro_scale_sigma, 2));
-    variance.segment<3>(kAccelScale).setConstant(rate * std::pow(noise.accel_scale_sigma, 2));
+  StateVector variance = StateVector::Zero(noise.layout.size());
+  part(variance, velocity).setConstant(integrals.accel_variance);
+  part(variance, attitude).setConstant(integrals.gyro_variance);
+  part(variance, gyro_bias).setConstant(noise.imu.gyro_bias_power() * dt);
+  part(variance, accel_bias).setConstant(noise.imu.accel_bias_power() * dt);
+  for (const SlowBlock& slow : noise.layout.slow()) {
+    variance.segment(kNodeSize + slow.index, slow.block.size)
+        .setConstant(2 * dt / slow.tau * slow.sigma * slow.sigma);
   }
   return variance;
 }
 
-/// Puts the closed form of Gauss-Markov processes in the place of its series.
-void set_markov(int row, double dt, const MarkovBias& process, Transition& t) {
+/// Puts the closed form of a Gauss-Markov process in the place of its series.
+void set_markov(int row, int size, double dt, const MarkovBias& process, Transition& t) {
   const double variance = process.sigma * process.sigma;
-  t.phi.block<3, 3>(row, row) = std::exp(-dt / process.tau) * Eigen::Matrix3d::Identity();
-  t.q.block<3, 3>(row, row) =
-      -std::expm1(-2 * dt / process.tau) * variance * Eigen::Matrix3d::Identity();
+  t.phi.block(row, row, size, size).setZero();
+  t.phi.block(row, row, size, size).diagonal().setConstant(std::exp(-dt / process.tau));
+  t.q.block(row, row, size, size).setZero();
+  t.q.block(row, row, size, size)
+      .diagonal()
+      .setConstant(-std::expm1(-2 * dt / process.tau) * variance);
 }
 
 /// The rows of position, velocity and attitude. Those of the sensors' errors below hold nothing but
 /// their decay on the diagonal, so that products come down to these rows.
-constexpr int kMotion = 9;
+constexpr int kMotion = block::gyro_bias.offset;
 using MotionRows =
-    Eigen::Matrix<double, kMotion, Eigen::Dynamic, Eigen::ColMajor, kMotion, kSizeWithScale>;
+    Eigen::Matrix<double, kMotion, Eigen::Dynamic, Eigen::ColMajor, kMotion, kMostSize>;
 
 /// X times a matrix of `rows` above the diagonal `decay`.
-MotionRows times(const MotionRows& X, const MotionRows& rows, const Vector& decay) {
+MotionRows times(const MotionRows& X, const MotionRows& rows, const StateVector& decay) {
   MotionRows out(kMotion, X.cols());
   out.noalias() = X.leftCols<kMotion>() * rows;
   out.rightCols(decay.size()) += X.rightCols(decay.size()) * decay.asDiagonal();
@@ -138,11 +150,11 @@ MotionRows times(const MotionRows& X, const MotionRows& rows, const Vector& deca
 /// the rest.
 struct Series {
   MotionRows rows;
-  Vector diagonal;
+  StateVector diagonal;
 };
 struct Powers {
   MotionRows first, second, third;
-  Vector decay;
+  StateVector decay;
 };
 Series series(const Powers& a, double share) {
   const double s2 = share * share / 2;
@@ -156,7 +168,7 @@ Series series(const Powers& a, double share) {
 }
 
 /// Adds weight * S V S^T, V diagonal. The rest's own block is set_markov()'s.
-void add_driven(double weight, const Series& s, const Vector& variance, Matrix& q) {
+void add_driven(double weight, const Series& s, const StateVector& variance, StateMatrix& q) {
   const Eigen::Index rest = s.diagonal.size();
   const MotionRows driven = weight * s.rows * variance.asDiagonal();
   q.topLeftCorner<kMotion, kMotion>().noalias() += driven * s.rows.transpose();
@@ -165,44 +177,13 @@ void add_driven(double weight, const Series& s, const Vector& variance, Matrix& 
 
 /// Attitude errors in b: at the begin dtheta = C0' psi, at the end dtheta = C1' psi.
 void turn_attitude_to_body(const Eigen::Matrix3d& C0, const Eigen::Matrix3d& C1, Transition& t) {
-  t.phi.middleRows<3>(kAttitude) = (C1.transpose() * t.phi.middleRows<3>(kAttitude)).eval();
-  t.phi.middleCols<3>(kAttitude) = (t.phi.middleCols<3>(kAttitude) * C0).eval();
-  t.q.middleRows<3>(kAttitude) = (C1.transpose() * t.q.middleRows<3>(kAttitude)).eval();
-  t.q.middleCols<3>(kAttitude) = (t.q.middleCols<3>(kAttitude) * C1).eval();
+  rows_of(t.phi, attitude) = (C1.transpose() * rows_of(t.phi, attitude)).eval();
+  columns_of(t.phi, attitude) = (columns_of(t.phi, attitude) * C0).eval();
+  rows_of(t.q, attitude) = (C1.transpose() * rows_of(t.q, attitude)).eval();
+  columns_of(t.q, attitude) = (columns_of(t.q, attitude) * C1).eval();
 }
 
 }  // namespace
-
-FullState corrected(const FullState& state, const Vector& error) {
-  FullState next = state;
-  next.motion = corrected(state.motion, error.head<9>());
-  next.bias.gyro += error.segment<3>(kGyroBias);
-  next.bias.accel += error.segment<3>(kAccelBias);
-  if (error.size() == kSizeWithScale) {
-    next.gyro_scale += error.segment<3>(kGyroScale);
-    next.accel_scale += error.segment<3>(kAccelScale);
-  }
-  return next;
-}
-
-Vector difference(const FullState& from, const FullState& to, int size) {
-  Vector error(size);
-  error.head<9>() = difference(from.motion, to.motion);
-  error.segment<3>(kGyroBias) = to.bias.gyro - from.bias.gyro;
-  error.segment<3>(kAccelBias) = to.bias.accel - from.bias.accel;
-  if (size == kSizeWithScale) {
-    error.segment<3>(kGyroScale) = to.gyro_scale - from.gyro_scale;
-    error.segment<3>(kAccelScale) = to.accel_scale - from.accel_scale;
-  }
-  return error;
-}
-
-ImuIncrement compensated(const ImuIncrement& increment, const FullState& state) {
-  ImuIncrement clean = without_bias(increment, state.bias);
-  clean.dtheta_b.array() /= 1 + state.gyro_scale.array();
-  clean.dvel_b.array() /= 1 + state.accel_scale.array();
-  return clean;
-}
 
 void MotionIntegrals::add(const ImuIncrement& increment, const Eigen::Matrix3d& R_n_b_begin,
                           const Eigen::Matrix3d& R_n_b_end, const ImuNoise& noise) {
@@ -219,11 +200,11 @@ void MotionIntegrals::add(const ImuIncrement& increment, const Eigen::Matrix3d& 
                             std::pow(increment.extra_accel_noise_density, 2));
 }
 
-Transition transition(const MotionIntegrals& integrals, const StrapdownState& begin,
-                      const StrapdownState& end, const ProcessNoise& noise) {
-  const Eigen::Vector3d v_n = 0.5 * (begin.v_n + end.v_n);
+Transition transition(const MotionIntegrals& integrals, const NavState& begin,
+                      const NavState& end, const ProcessNoise& noise) {
+  const Eigen::Vector3d v_n = 0.5 * (begin.velocity_n + end.velocity_n);
   const Place place(displaced(begin.position, 0.5 * integrals.dt * v_n, Place(begin.position)));
-  const Matrix dynamics = mean_dynamics(integrals, place, v_n, noise);
+  const StateMatrix dynamics = mean_dynamics(integrals, place, v_n, noise);
   const Eigen::Index rest = dynamics.rows() - kMotion;
   Powers a{dynamics.topRows<kMotion>(), {}, {}, dynamics.diagonal().tail(rest)};
   a.second = times(a.first, a.first, a.decay);
@@ -232,32 +213,31 @@ Transition transition(const MotionIntegrals& integrals, const StrapdownState& be
   const Series half = series(a, 0.5);  // from mid-interval to its end
 
   Transition t;
-  t.phi = Matrix::Zero(dynamics.rows(), dynamics.cols());
+  t.phi = StateMatrix::Zero(dynamics.rows(), dynamics.cols());
   t.phi.topRows<kMotion>() = whole.rows;
-  const Vector variance = driving_variance(integrals, noise);
-  t.q = Matrix::Zero(dynamics.rows(), dynamics.cols());
+  const StateVector variance = driving_variance(integrals, noise);
+  t.q = StateMatrix::Zero(dynamics.rows(), dynamics.cols());
   add_driven(4.0 / 6, half, variance, t.q);
   add_driven(1.0 / 6, whole, variance, t.q);
   t.q.diagonal() += variance / 6;
   t.q.bottomLeftCorner(rest, kMotion) = t.q.topRightCorner(kMotion, rest).transpose();
 
-  set_markov(kGyroBias, integrals.dt, gyro_markov_bias(noise.imu), t);
-  set_markov(kAccelBias, integrals.dt, accel_markov_bias(noise.imu), t);
-  if (noise.with_scale) {
-    set_markov(kGyroScale, integrals.dt, {noise.gyro_scale_sigma, noise.scale_tau}, t);
-    set_markov(kAccelScale, integrals.dt, {noise.accel_scale_sigma, noise.scale_tau}, t);
+  set_markov(gyro_bias.offset, gyro_bias.size, integrals.dt, gyro_markov_bias(noise.imu), t);
+  set_markov(accel_bias.offset, accel_bias.size, integrals.dt, accel_markov_bias(noise.imu), t);
+  for (const SlowBlock& slow : noise.layout.slow()) {
+    set_markov(kNodeSize + slow.index, slow.block.size, integrals.dt, {slow.sigma, slow.tau}, t);
   }
   turn_attitude_to_body(begin.q_n_b.toRotationMatrix(), end.q_n_b.toRotationMatrix(), t);
   return t;
 }
 
-Matrix propagated(const Matrix& covariance, const Transition& t) {
+StateMatrix propagated(const StateMatrix& covariance, const Transition& t) {
   const Eigen::Index rest = covariance.rows() - kMotion;
   const MotionRows rows = t.phi.topRows<kMotion>();
-  const Vector decay = t.phi.diagonal().tail(rest);
+  const StateVector decay = t.phi.diagonal().tail(rest);
   MotionRows carried(kMotion, covariance.cols());
   carried.noalias() = rows * covariance;
-  Matrix next = t.q;
+  StateMatrix next = t.q;
   next.topLeftCorner<kMotion, kMotion>().noalias() += carried * rows.transpose();
   const MotionRows cross = carried.rightCols(rest) * decay.asDiagonal();
   next.topRightCorner(kMotion, rest) += cross;

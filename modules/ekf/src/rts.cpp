@@ -5,52 +5,45 @@
 namespace foucault {
 namespace {
 
-/// State and covariance from all fixes, every component of the filter's.
+/// State and covariance from everything measured.
 struct Smoothed {
-  ekf::FullState state;
-  Eigen::MatrixXd covariance;
+  NavState state;
+  StateMatrix covariance;
 };
 
 /// One step back. G = P_f phi' P_p^-1; the error found in the next node's prediction is carried to
 /// the filtered state.
 Smoothed step_back(const RtsNode& node, const RtsNode& next, const Smoothed& next_smoothed) {
-  const Eigen::MatrixXd carried = next.phi * node.filtered_covariance;
-  const Eigen::MatrixXd gain = next.predicted_covariance.ldlt().solve(carried).transpose();
-  const ekf::Vector found =
-      difference(next.predicted, next_smoothed.state, static_cast<int>(gain.rows()));
-  const Eigen::MatrixXd change = next_smoothed.covariance - next.predicted_covariance;
-  const Eigen::MatrixXd covariance = node.filtered_covariance + gain * change * gain.transpose();
-  return {corrected(node.filtered, gain * found), 0.5 * (covariance + covariance.transpose())};
+  const StateMatrix filtered = node.filtered_covariance.full();
+  const StateMatrix predicted = next.predicted_covariance.full();
+  const StateMatrix carried = next.phi * filtered;
+  const StateMatrix gain = predicted.ldlt().solve(carried).transpose();
+  const StateVector found = boxminus(next_smoothed.state, next.predicted);
+  const StateMatrix change = next_smoothed.covariance - predicted;
+  const StateMatrix covariance = filtered + gain * change * gain.transpose();
+  return {boxplus(node.filtered, gain * found), 0.5 * (covariance + covariance.transpose())};
 }
 
-SmoothedNode result_of(const RtsNode& node, const Smoothed& smoothed) {
-  return {smoothed.state, smoothed.covariance.topLeftCorner<15, 15>(),
-          difference(node.predicted, smoothed.state, error_state::kSize),
-          difference(node.filtered, smoothed.state, error_state::kSize)};
-}
-
-Epoch to_epoch(const SmoothedNode& node) {
-  const ekf::FullState& state = node.state;
-  Epoch epoch;
-  epoch.t_ns = state.motion.t_ns;
-  epoch.position = state.motion.position;
-  epoch.velocity_n = state.motion.v_n;
-  epoch.q_n_b = state.motion.q_n_b;
-  epoch.bias = state.bias;
-  epoch.covariance = node.covariance;
-  return epoch;
+SmoothedEpoch result_of(const RtsNode& node, const Smoothed& smoothed) {
+  return {smoothed.state, PackedSymmetric(smoothed.covariance),
+          boxminus(smoothed.state, node.predicted).head<kNodeSize>(),
+          boxminus(smoothed.state, node.filtered).head<kNodeSize>()};
 }
 
 }  // namespace
 
-std::vector<SmoothedNode> smooth(const std::vector<RtsNode>& nodes) {
-  std::vector<SmoothedNode> results(nodes.size());
+std::vector<SmoothedEpoch> smooth(std::deque<RtsNode> nodes) {
+  std::vector<SmoothedEpoch> results(nodes.size());
   Smoothed smoothed;
+  RtsNode next;
   for (std::size_t k = nodes.size(); k-- > 0;) {
-    const bool ends_run = k + 1 == nodes.size() || nodes[k + 1].begins_run;
-    smoothed = ends_run ? Smoothed{nodes[k].filtered, nodes[k].filtered_covariance}
-                        : step_back(nodes[k], nodes[k + 1], smoothed);
-    results[k] = result_of(nodes[k], smoothed);
+    RtsNode node = std::move(nodes.back());
+    nodes.pop_back();
+    const bool ends_run = k + 1 == results.size() || next.begins_run;
+    smoothed = ends_run ? Smoothed{node.filtered, node.filtered_covariance.full()}
+                        : step_back(node, next, smoothed);
+    results[k] = result_of(node, smoothed);
+    next = std::move(node);
   }
   return results;
 }
@@ -62,14 +55,17 @@ void RtsRecorder::start(const Epoch& initial) {
   nodes_.back().begins_run = true;
 }
 
-void RtsRecorder::update(const GnssFix& fix) {
-  catch_up();
+void RtsRecorder::update(const ObservationPtr& observation) {
+  mark();
+  EkfNavigator::update(observation);
+  nodes_.back().filtered = state();
+  nodes_.back().filtered_covariance = PackedSymmetric(covariance());
+}
+
+/// What is added lies between two nodes.
+void RtsRecorder::loosen(const NodeMatrix& added) {
+  EkfNavigator::loosen(added);
   add_node();
-  EkfNavigator::update(fix);
-  RtsNode& node = nodes_.back();
-  node.filtered = state();
-  node.filtered_covariance = covariance();
-  node.p_b_a = fix.p_b_a;
 }
 
 std::size_t RtsRecorder::mark() {
@@ -81,27 +77,17 @@ std::size_t RtsRecorder::mark() {
 }
 
 bool RtsRecorder::at_node() const {
-  return !nodes_.empty() && nodes_.back().filtered.motion.t_ns == state().motion.t_ns;
+  return !nodes_.empty() && nodes_.back().filtered.t_ns == state().t_ns;
 }
 
-std::vector<SmoothedEpoch> RtsRecorder::smoothed() {
-  const std::vector<SmoothedNode> nodes = smooth(nodes_);
-  std::vector<SmoothedEpoch> out;
-  out.reserve(nodes.size());
-  for (std::size_t k = 0; k < nodes.size(); ++k)
-    out.push_back({to_epoch(nodes[k]), nodes[k].before, nodes[k].after, nodes_[k].p_b_a});
-  return out;
-}
-
-void RtsRecorder::stepped(const ekf::Matrix& phi) { phi_ = (phi * phi_).eval(); }
+void RtsRecorder::stepped(const StateMatrix& phi) { phi_ = (phi * phi_).eval(); }
 
 void RtsRecorder::add_node() {
-  RtsNode node;
+  RtsNode& node = nodes_.emplace_back();
   node.predicted = node.filtered = state();
-  node.predicted_covariance = node.filtered_covariance = covariance();
+  node.predicted_covariance = node.filtered_covariance = PackedSymmetric(covariance());
   node.phi = phi_;
-  phi_ = ekf::Matrix::Identity(node.predicted_covariance.rows(), node.predicted_covariance.cols());
-  nodes_.push_back(std::move(node));
+  phi_ = StateMatrix::Identity(covariance().rows(), covariance().cols());
 }
 
 }  // namespace foucault

@@ -4,10 +4,10 @@
 
 namespace foucault {
 
-std::unique_ptr<Estimator> make_rts_smoother(const ImuNoise& imu, const EkfOptions& options,
-                                             Aligner aligner,
+std::unique_ptr<Estimator> make_rts_smoother(const ImuNoise& imu, const Layout& layout,
+                                             const EkfOptions& options, Aligner aligner,
                                              const NavigationRunOptions& run_options, Sink& sink) {
-  auto recorder = std::make_unique<RtsRecorder>(imu, options);
+  auto recorder = std::make_unique<RtsRecorder>(imu, layout, options);
   RtsRecorder& recording = *recorder;
   return std::make_unique<Smoother>(std::move(recorder), recording, std::move(aligner), run_options,
                                     sink);

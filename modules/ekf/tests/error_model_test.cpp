@@ -7,26 +7,22 @@
 namespace foucault {
 namespace {
 
-using ekf::FullState;
-using ekf::Matrix;
-using ekf::Vector;
+using Matrix = StateMatrix;
+using Vector = StateVector;
 using test::Trip;
 using test::TripWindow;
 
-constexpr int kSize = ekf::kSizeWithScale;
+constexpr int kSize = kNodeSize + 6;  // with scale factors
 
 /// Units in which errors of a car's MEMS navigation are of order one.
 Vector natural_units() {
   Vector units(kSize);
-  for (int i = 0; i < 3; ++i) {
-    units[error_state::kPosition + i] = 1;      // m
-    units[error_state::kVelocity + i] = 0.1;    // m/s
-    units[error_state::kAttitude + i] = 1e-2;   // rad
-    units[error_state::kGyroBias + i] = 1e-3;   // rad/s
-    units[error_state::kAccelBias + i] = 1e-2;  // m/s^2
-    units[ekf::kGyroScale + i] = 1e-2;
-    units[ekf::kAccelScale + i] = 1e-2;
-  }
+  part(units, block::position).setConstant(1);       // m
+  part(units, block::velocity).setConstant(0.1);     // m/s
+  part(units, block::attitude).setConstant(1e-2);    // rad
+  part(units, block::gyro_bias).setConstant(1e-3);   // rad/s
+  part(units, block::accel_bias).setConstant(1e-2);  // m/s^2
+  units.tail<6>().setConstant(1e-2);
   return units;
 }
 
@@ -35,48 +31,58 @@ Matrix in_natural_units(const Matrix& phi) {
   return units.cwiseInverse().asDiagonal() * phi * units.asDiagonal();
 }
 
+Layout with_scale_factors() {
+  constexpr double kForever = 1e12;
+  return Layout().add(block::gyro_scale, 0, kForever).add(block::accel_scale, 0, kForever);
+}
+
+ImuIncrement compensated(const ImuIncrement& increment, const NavState& state) {
+  return without_scale(without_bias(increment, state.bias),
+                       with_scale_factors().imu_scale(state.slow));
+}
+
 /// The mechanization alone, over all increments.
-FullState integrated(FullState state, const std::vector<ImuIncrement>& increments) {
+NavState integrated(NavState state, const std::vector<ImuIncrement>& increments) {
   ImuIncrement previous;
   for (const ImuIncrement& increment : increments) {
     const ImuIncrement clean = compensated(increment, state);
-    state.motion = advance(state.motion, previous, clean);
+    state = advance(state, previous, clean);
     previous = clean;
   }
   return state;
 }
 
 /// Central differences of the mechanization by every error of the begin.
-Matrix numerical_transition(const FullState& begin, const std::vector<ImuIncrement>& increments) {
+Matrix numerical_transition(const NavState& begin, const std::vector<ImuIncrement>& increments) {
   const Vector units = natural_units();
-  const FullState end = integrated(begin, increments);
+  const NavState end = integrated(begin, increments);
   Matrix phi(kSize, kSize);
   for (int i = 0; i < kSize; ++i) {
     const Vector step = 1e-2 * units[i] * Vector::Unit(kSize, i);
-    const FullState plus = integrated(corrected(begin, step), increments);
-    const FullState minus = integrated(corrected(begin, -step), increments);
-    phi.col(i) = (difference(end, plus, kSize) - difference(end, minus, kSize)) / (2e-2 * units[i]);
+    const NavState plus = integrated(boxplus(begin, step), increments);
+    const NavState minus = integrated(boxplus(begin, -step), increments);
+    phi.col(i) = (boxminus(plus, end) - boxminus(minus, end)) / (2e-2 * units[i]);
   }
   return phi;
 }
 
 /// Product of the filter's transitions, a step for so many increments.
-Matrix analytic_transition(FullState state, const std::vector<ImuIncrement>& increments,
+Matrix analytic_transition(NavState state, const std::vector<ImuIncrement>& increments,
                            const ekf::ProcessNoise& noise, std::size_t increments_per_step) {
   Matrix phi = Matrix::Identity(kSize, kSize);
   ImuIncrement previous;
-  StrapdownState begin = state.motion;
+  NavState begin = state;
   ekf::MotionIntegrals integrals;
   std::size_t count = 0;
   for (const ImuIncrement& increment : increments) {
     const ImuIncrement clean = compensated(increment, state);
-    const Eigen::Matrix3d R_begin = state.motion.q_n_b.toRotationMatrix();
-    state.motion = advance(state.motion, previous, clean);
-    integrals.add(clean, R_begin, state.motion.q_n_b.toRotationMatrix(), noise.imu);
+    const Eigen::Matrix3d R_begin = state.q_n_b.toRotationMatrix();
+    state = advance(state, previous, clean);
+    integrals.add(clean, R_begin, state.q_n_b.toRotationMatrix(), noise.imu);
     previous = clean;
     if (++count % increments_per_step == 0) {
-      phi = (transition(integrals, begin, state.motion, noise).phi * phi).eval();
-      begin = state.motion;
+      phi = (transition(integrals, begin, state, noise).phi * phi).eval();
+      begin = state;
       integrals = {};
     }
   }
@@ -85,16 +91,15 @@ Matrix analytic_transition(FullState state, const std::vector<ImuIncrement>& inc
 
 ekf::ProcessNoise with_scale_and_constant_biases() {
   ekf::ProcessNoise noise;
-  noise.with_scale = true;
+  noise.layout = with_scale_factors();
   noise.imu.bias_tau = 1e12;
-  noise.scale_tau = 1e12;
   return noise;
 }
 
 /// The dynamics compared with differences of the mechanization that they linearize.
 void expect_transition_matches(const Trip& trip, double tolerance) {
-  FullState begin;
-  begin.motion = trip.truth(trip.begin_ns());
+  NavState begin = trip.truth(trip.begin_ns());
+  begin.slow = Eigen::VectorXd::Zero(6);
   begin.bias = {{1e-3, -2e-3, 3e-3}, {0.02, -0.01, 0.03}};
   std::vector<ImuIncrement> measured = trip.increments();
   for (ImuIncrement& m : measured) {
@@ -127,21 +132,22 @@ TEST(ErrorModel, TransitionMatchesDifferencesInAnAirliner) {
 
 TEST(ErrorModel, ToleranceSeesCoriolisAndGravityGradient) {
   const Trip trip({"airliner", 700, 10, 100});
-  FullState begin;
-  begin.motion = trip.truth(trip.begin_ns());
+  NavState begin = trip.truth(trip.begin_ns());
+  begin.slow = Eigen::VectorXd::Zero(6);
   const Matrix phi = in_natural_units(numerical_transition(begin, trip.increments()));
   EXPECT_GT(std::abs(phi(3, 4)), 10 * kTolerance) << "Coriolis";
   EXPECT_GT(std::abs(phi(5, 2)), 4 * kTolerance) << "gravity gradient";
 }
 
-TEST(ErrorModel, DifferenceInvertsCorrected) {
+TEST(ErrorModel, BoxminusInvertsBoxplus) {
   std::mt19937_64 rng{42};
-  FullState state;
-  state.motion.position = {0.5, 3.14159265, 100};
-  state.motion.q_n_b = so3::exp({0.3, -1.2, 2.0});
+  NavState state;
+  state.position = {0.5, 3.14159265, 100};
+  state.q_n_b = so3::exp({0.3, -1.2, 2.0});
+  state.slow = Eigen::VectorXd::Zero(6);
   Vector error(kSize);
   for (int i = 0; i < kSize / 3; ++i) error.segment<3>(3 * i) = test::draw3(rng);
-  const Vector back = difference(state, corrected(state, error), kSize);
+  const Vector back = boxminus(boxplus(state, error), state);
   EXPECT_LT((back - error).norm(), 1e-8);  // rounding of radians: 1 nm
 }
 
@@ -152,7 +158,7 @@ TEST(ErrorModel, MarkovProcessesAreInClosedForm) {
   noise.imu.accel_bias_sigma = 3e-2;
   const Trip trip({"static", 10, 0.5, 100});
   ekf::MotionIntegrals integrals;
-  const StrapdownState begin = trip.truth(trip.begin_ns());
+  const NavState begin = trip.truth(trip.begin_ns());
   const Eigen::Matrix3d R = begin.q_n_b.toRotationMatrix();
   for (const ImuIncrement& increment : trip.increments()) integrals.add(increment, R, R, noise.imu);
   const ekf::Transition t = transition(integrals, begin, begin, noise);
@@ -171,7 +177,7 @@ TEST(ErrorModel, TurnOnValuesDoNotDecay) {
   noise.imu.accel_turn_on_sigma = 3e-2;  // and no variation
   const Trip trip({"static", 10, 0.5, 100});
   ekf::MotionIntegrals integrals;
-  const StrapdownState begin = trip.truth(trip.begin_ns());
+  const NavState begin = trip.truth(trip.begin_ns());
   const Eigen::Matrix3d R = begin.q_n_b.toRotationMatrix();
   for (const ImuIncrement& increment : trip.increments()) integrals.add(increment, R, R, noise.imu);
   const ekf::Transition t = transition(integrals, begin, begin, noise);
@@ -185,8 +191,8 @@ TEST(ErrorModel, TurnOnValuesDoNotDecay) {
 /// Errors of a filter that starts exact and gets noisy increments, against its covariance.
 struct MonteCarlo {
   int runs = 0;
-  Matrix15d covariance = Matrix15d::Zero();  ///< of the filter
-  Matrix15d sampled = Matrix15d::Zero();     ///< of the runs
+  NodeMatrix covariance = NodeMatrix::Zero();  ///< of the filter
+  NodeMatrix sampled = NodeMatrix::Zero();     ///< of the runs
 };
 
 MonteCarlo monte_carlo(const Trip& trip, const ImuNoise& noise, double extra_density,
@@ -196,11 +202,10 @@ MonteCarlo monte_carlo(const Trip& trip, const ImuNoise& noise, double extra_den
   MonteCarlo result;
   result.runs = runs;
   for (int run = 0; run < result.runs; ++run) {
-    EkfNavigator navigator(noise, options);
-    FullState begin;
-    begin.motion = trip.truth(trip.begin_ns());
-    navigator.start(test::to_epoch(begin, Matrix15d::Zero()));
-    FullState truth = begin;
+    EkfNavigator navigator(noise, Layout{}, options);
+    const NavState begin = trip.truth(trip.begin_ns());
+    navigator.start(test::to_epoch(begin, NodeMatrix::Zero()));
+    NavState truth = begin;
     for (const ImuIncrement& exact : trip.increments()) {
       const double dt = exact.dt();
       const double decay = std::exp(-dt / noise.bias_tau);
@@ -216,8 +221,9 @@ MonteCarlo monte_carlo(const Trip& trip, const ImuNoise& noise, double extra_den
           decay * truth.bias.accel + drive * noise.accel_bias_sigma * test::draw3(rng);
       navigator.propagate(m);
     }
-    truth.motion = trip.truth(navigator.state().motion.t_ns);
-    const Vector15d error = difference(navigator.state(), truth, error_state::kSize);
+    NavState end = trip.truth(navigator.state().t_ns);
+    end.bias = truth.bias;
+    const NodeVector error = boxminus(end, navigator.state());
     result.sampled += error * error.transpose() / result.runs;
     if (run == 0) result.covariance = navigator.epoch().covariance;
   }
@@ -225,9 +231,9 @@ MonteCarlo monte_carlo(const Trip& trip, const ImuNoise& noise, double extra_den
 }
 
 /// L^-1 sampled L^-T with L L' = covariance: the unit matrix if the filter is right.
-Matrix15d whitened(const MonteCarlo& mc) {
-  const Eigen::LLT<Matrix15d> llt(mc.covariance);
-  const Matrix15d half = llt.matrixL().solve(mc.sampled);
+NodeMatrix whitened(const MonteCarlo& mc) {
+  const Eigen::LLT<NodeMatrix> llt(mc.covariance);
+  const NodeMatrix half = llt.matrixL().solve(mc.sampled);
   return llt.matrixL().solve(half.transpose());
 }
 
@@ -243,7 +249,7 @@ ImuNoise strong_noise() {
 
 TEST(ErrorModel, CovarianceMatchesMonteCarlo) {
   const MonteCarlo mc = monte_carlo(Trip({"city", 100, 4, 50}), strong_noise(), 0);
-  const Matrix15d deviation = whitened(mc) - Matrix15d::Identity();
+  const NodeMatrix deviation = whitened(mc) - NodeMatrix::Identity();
   // Sampling error of a variance: sqrt(2 / runs) = 4.5 %; 120 elements, 4.5 sigma.
   EXPECT_LT(deviation.cwiseAbs().maxCoeff(), 4.5 * std::sqrt(2.0 / mc.runs));
 }
@@ -251,7 +257,7 @@ TEST(ErrorModel, CovarianceMatchesMonteCarlo) {
 TEST(ErrorModel, ExtraNoiseOfAnIncrementIsCounted) {
   const Trip trip({"city", 100, 4, 50});
   const MonteCarlo mc = monte_carlo(trip, strong_noise(), 4e-4);
-  const Matrix15d deviation = whitened(mc) - Matrix15d::Identity();
+  const NodeMatrix deviation = whitened(mc) - NodeMatrix::Identity();
   EXPECT_LT(deviation.cwiseAbs().maxCoeff(), 4.5 * std::sqrt(2.0 / mc.runs));
 }
 
@@ -259,7 +265,7 @@ TEST(ErrorModel, MonteCarloSeesMissingNoise) {
   const Trip trip({"city", 100, 4, 50});
   MonteCarlo mc = monte_carlo(trip, strong_noise(), 4e-4);
   mc.covariance = monte_carlo(trip, strong_noise(), 0, 1).covariance;
-  EXPECT_GT((whitened(mc) - Matrix15d::Identity()).cwiseAbs().maxCoeff(),
+  EXPECT_GT((whitened(mc) - NodeMatrix::Identity()).cwiseAbs().maxCoeff(),
             10 * std::sqrt(2.0 / mc.runs));
 }
 

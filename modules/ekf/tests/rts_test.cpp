@@ -11,24 +11,23 @@
 namespace foucault {
 namespace {
 
-using ekf::FullState;
 using test::kDeg;
 using test::Trip;
 
-constexpr int kSize = error_state::kSize;
+constexpr int kSize = kNodeSize;
 
 /// A linear estimation problem in the error state: x_0 ~ (0, P0), x_k+1 = phi_k x_k + w,
 /// z_k = position of x_k + noise. Attitude errors are small enough for rotations to add up.
 struct LinearProblem {
   static constexpr int kNodes = 6;
-  Matrix15d P0;
-  std::vector<Matrix15d> phi, Q;  ///< from node k to k + 1
+  NodeMatrix P0;
+  std::vector<NodeMatrix> phi, Q;  ///< from node k to k + 1
   std::vector<Eigen::Vector3d> z;
   Eigen::Matrix3d R = Eigen::Vector3d(0.01, 0.02, 0.04).asDiagonal();
 };
 
-Vector15d sigmas() {
-  Vector15d s;
+NodeVector sigmas() {
+  NodeVector s;
   s << Eigen::Vector3d::Constant(0.3), Eigen::Vector3d::Constant(0.2),
       Eigen::Vector3d::Constant(1e-7), Eigen::Vector3d::Constant(1e-3),
       Eigen::Vector3d::Constant(1e-2);
@@ -37,30 +36,30 @@ Vector15d sigmas() {
 
 LinearProblem random_problem() {
   std::mt19937_64 rng{11};
-  const Vector15d s = sigmas();
+  const NodeVector s = sigmas();
   LinearProblem p;
   p.P0 = test::random_covariance(rng, s);
   for (int k = 0; k < LinearProblem::kNodes; ++k) {
-    Matrix15d mix;
+    NodeMatrix mix;
     for (int i = 0; i < 15; ++i) mix.col(i) = 0.2 * test::draw15(rng);
-    p.phi.push_back(s.asDiagonal() * (Matrix15d::Identity() + mix) * s.cwiseInverse().asDiagonal());
+    p.phi.push_back(s.asDiagonal() * (NodeMatrix::Identity() + mix) * s.cwiseInverse().asDiagonal());
     p.Q.push_back(0.1 * test::random_covariance(rng, s));
     p.z.push_back(0.3 * test::draw3(rng));
   }
   return p;
 }
 
-FullState origin() {
-  FullState state;
-  state.motion.position = {0.1, 0.2, 30};
+NavState origin() {
+  NavState state;
+  state.position = {0.1, 0.2, 30};
   return state;
 }
 
 /// The filter's forward pass as nodes.
-std::vector<RtsNode> filtered(const LinearProblem& p) {
-  std::vector<RtsNode> nodes;
-  Vector15d x = Vector15d::Zero();
-  Matrix15d P = p.P0;
+std::deque<RtsNode> filtered(const LinearProblem& p) {
+  std::deque<RtsNode> nodes;
+  NodeVector x = NodeVector::Zero();
+  NodeMatrix P = p.P0;
   for (int k = 0; k < LinearProblem::kNodes; ++k) {
     RtsNode node;
     node.begins_run = k == 0;
@@ -69,14 +68,14 @@ std::vector<RtsNode> filtered(const LinearProblem& p) {
       P = (p.phi[k - 1] * P * p.phi[k - 1].transpose() + p.Q[k - 1]).eval();
       node.phi = p.phi[k - 1];
     }
-    node.predicted = corrected(origin(), x);
-    node.predicted_covariance = P;
+    node.predicted = boxplus(origin(), x);
+    node.predicted_covariance = PackedSymmetric(P);
     const Eigen::Matrix<double, 15, 3> K =
         P.leftCols<3>() * (P.topLeftCorner<3, 3>() + p.R).inverse();
     x = (x + K * (p.z[k] - x.head<3>())).eval();
     P = (P - K * P.topRows<3>()).eval();
-    node.filtered = corrected(origin(), x);
-    node.filtered_covariance = P;
+    node.filtered = boxplus(origin(), x);
+    node.filtered_covariance = PackedSymmetric(P);
     nodes.push_back(node);
   }
   return nodes;
@@ -98,7 +97,7 @@ Batch least_squares(const LinearProblem& p) {
     right.segment<3>(15 * k) += p.R.inverse() * p.z[k];
     if (k + 1 == LinearProblem::kNodes) break;
     Eigen::Matrix<double, 15, 30> J;
-    J << -p.phi[k], Matrix15d::Identity();
+    J << -p.phi[k], NodeMatrix::Identity();
     information.block<30, 30>(15 * k, 15 * k) += J.transpose() * p.Q[k].inverse() * J;
   }
   const Eigen::VectorXd scale = sigmas().replicate(LinearProblem::kNodes, 1);
@@ -109,14 +108,14 @@ Batch least_squares(const LinearProblem& p) {
 
 TEST(Rts, EqualsBatchLeastSquaresOnALinearProblem) {
   const LinearProblem p = random_problem();
-  const std::vector<SmoothedNode> nodes = smooth(filtered(p));
+  const std::vector<SmoothedEpoch> nodes = smooth(filtered(p));
   const Batch batch = least_squares(p);
-  const Vector15d units = sigmas().cwiseInverse();
+  const NodeVector units = sigmas().cwiseInverse();
   for (int k = 0; k < LinearProblem::kNodes; ++k) {
-    const Vector15d x = difference(origin(), nodes[k].state, kSize);
-    const Vector15d dx = units.asDiagonal() * (x - batch.x.segment<15>(15 * k));
-    const Matrix15d dP = units.asDiagonal() *
-                         (nodes[k].covariance - batch.covariance.block<15, 15>(15 * k, 15 * k)) *
+    const NodeVector x = boxminus(nodes[k].state, origin());
+    const NodeVector dx = units.asDiagonal() * (x - batch.x.segment<15>(15 * k));
+    const NodeMatrix dP = units.asDiagonal() *
+                         (nodes[k].covariance.full() - batch.covariance.block<15, 15>(15 * k, 15 * k)) *
                          units.asDiagonal();
     // A metre of the ellipsoid is linear to 1e-7.
     EXPECT_LT(dx.cwiseAbs().maxCoeff(), 1e-6) << "node " << k;
@@ -125,13 +124,13 @@ TEST(Rts, EqualsBatchLeastSquaresOnALinearProblem) {
 }
 
 TEST(Rts, NothingIsCarriedBackOverAStart) {
-  std::vector<RtsNode> nodes = filtered(random_problem());
+  std::deque<RtsNode> nodes = filtered(random_problem());
   nodes[3].begins_run = true;
-  const std::vector<SmoothedNode> alone = smooth({nodes.begin(), nodes.begin() + 3});
-  const std::vector<SmoothedNode> both = smooth(nodes);
+  const std::vector<SmoothedEpoch> alone = smooth({nodes.begin(), nodes.begin() + 3});
+  const std::vector<SmoothedEpoch> both = smooth(nodes);
   for (int k = 0; k < 3; ++k) {
-    EXPECT_EQ(difference(alone[k].state, both[k].state, kSize).norm(), 0);
-    EXPECT_EQ(alone[k].covariance, both[k].covariance);
+    EXPECT_EQ(boxminus(both[k].state, alone[k].state).norm(), 0);
+    EXPECT_EQ(alone[k].covariance.full(), both[k].covariance.full());
   }
 }
 
@@ -187,7 +186,7 @@ Collected run_smoother(const ScenarioOptions& scenario, const ImuNoise& noise,
   SimulatedSource source(scenario, noise);
   Aligner aligner(given_alignment(source, scenario.start_ns()), noise, source.mounting());
   const std::unique_ptr<Estimator> rts =
-      make_rts_smoother(noise, EkfOptions{}, std::move(aligner), options, collected);
+      make_rts_smoother(noise, Layout{}, EkfOptions{}, std::move(aligner), options, collected);
   feed(*rts, source, scenario.start_ns());
   return collected;
 }
@@ -198,7 +197,7 @@ BothWays run_both_ways(const ScenarioOptions& scenario, const ImuNoise& noise) {
   {
     SimulatedSource source(scenario, noise);
     Aligner aligner(given_alignment(source, start_ns), noise, source.mounting());
-    NavigationRun run(std::make_unique<EkfNavigator>(noise, EkfOptions{}), std::move(aligner),
+    NavigationRun run(std::make_unique<EkfNavigator>(noise, Layout{}, EkfOptions{}), std::move(aligner),
                       NavigationRunOptions{}, both.forward);
     feed(run, source, start_ns);
   }
@@ -227,7 +226,7 @@ TEST(RtsSmoother, IsNeverWorseThanTheForwardRun) {
       const Epoch& forward = both.forward.epochs[k];
       const Epoch& smoothed = both.smoothed.epochs[k];
       ASSERT_EQ(forward.t_ns, smoothed.t_ns);
-      const Vector15d gain = forward.covariance.diagonal() - smoothed.covariance.diagonal();
+      const NodeVector gain = forward.covariance.diagonal() - smoothed.covariance.diagonal();
       EXPECT_GE(gain.cwiseQuotient(forward.covariance.diagonal()).minCoeff(), -1e-6);
       if (!in_outage(seconds_between(scenario.start_ns(), forward.t_ns))) continue;
       const Eigen::Vector3d error = position_error(truth, smoothed);
@@ -285,7 +284,7 @@ TEST(RtsSmoother, EpochsBetweenNodesAreInterpolated) {
     EXPECT_LT(displacement_n(epoch.position, other.position, place).norm(), 1e-3);
     EXPECT_LT((epoch.velocity_n - other.velocity_n).norm(), 5e-3);
     EXPECT_LT(epoch.q_n_b.angularDistance(other.q_n_b), 1e-4);
-    const Vector15d ratio = other.covariance.diagonal().cwiseQuotient(epoch.covariance.diagonal());
+    const NodeVector ratio = other.covariance.diagonal().cwiseQuotient(epoch.covariance.diagonal());
     EXPECT_LT((ratio.array() - 1).abs().maxCoeff(), 0.2);
     ++compared;
   }

@@ -8,6 +8,7 @@
 #include "foucault/core/so3.h"
 #include "foucault/core/time.h"
 #include "foucault/ekf/ekf.h"
+#include "foucault/geodesy/place.h"
 #include "foucault/simulation/imu_simulator.h"
 #include "foucault/simulation/scenario.h"
 
@@ -39,9 +40,14 @@ class Trip {
   int64_t begin_ns() const { return begin_ns_; }
   const std::vector<ImuIncrement>& increments() const { return increments_; }
 
-  StrapdownState truth(int64_t t_ns) const {
+  NavState truth(int64_t t_ns) const {
     const Motion motion = trajectory_.at(to_seconds(t_ns));
-    return {t_ns, motion.position, motion.velocity_n, motion.q_n_v};
+    NavState state;
+    state.t_ns = t_ns;
+    state.position = motion.position;
+    state.velocity_n = motion.velocity_n;
+    state.q_n_b = motion.q_n_v;
+    return state;
   }
 
   /// The exact fix of an antenna on kLeverArm.
@@ -78,29 +84,22 @@ inline Eigen::Vector3d draw3(std::mt19937_64& rng) {
   return {x, y, normal(rng)};
 }
 
-inline Vector15d draw15(std::mt19937_64& rng) {
-  Vector15d v;
+inline NodeVector draw15(std::mt19937_64& rng) {
+  NodeVector v;
   for (int i = 0; i < 5; ++i) v.segment<3>(3 * i) = draw3(rng);
   return v;
 }
 
 /// A random symmetric positive definite matrix with the given sigmas on its diagonal's order.
-inline Matrix15d random_covariance(std::mt19937_64& rng, const Vector15d& sigmas) {
-  Matrix15d m;
+inline NodeMatrix random_covariance(std::mt19937_64& rng, const NodeVector& sigmas) {
+  NodeMatrix m;
   for (int i = 0; i < 15; ++i) m.col(i) = draw15(rng);
-  const Matrix15d spd = m * m.transpose() / 15 + 0.1 * Matrix15d::Identity();
+  const NodeMatrix spd = m * m.transpose() / 15 + 0.1 * NodeMatrix::Identity();
   return sigmas.asDiagonal() * spd * sigmas.asDiagonal();
 }
 
-inline Epoch to_epoch(const ekf::FullState& state, const Matrix15d& covariance) {
-  Epoch epoch;
-  epoch.t_ns = state.motion.t_ns;
-  epoch.position = state.motion.position;
-  epoch.velocity_n = state.motion.v_n;
-  epoch.q_n_b = state.motion.q_n_b;
-  epoch.bias = state.bias;
-  epoch.covariance = covariance;
-  return epoch;
+inline Epoch to_epoch(const NavState& state, const NodeMatrix& covariance) {
+  return {state, covariance};
 }
 
 }  // namespace foucault::test

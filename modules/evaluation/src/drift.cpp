@@ -101,14 +101,10 @@ Geodetic antenna_position(const Epoch& epoch, const Eigen::Vector3d& p_b_a) {
 
 Eigen::Matrix3d antenna_covariance(const Epoch& epoch, const Eigen::Vector3d& p_b_a) {
   const Eigen::Matrix3d by_attitude = -epoch.q_n_b.toRotationMatrix() * so3::skew(p_b_a);
-  const auto block = [&epoch](int row, int column) -> Eigen::Matrix3d {
-    return epoch.covariance.block<3, 3>(row, column);
-  };
-  using error_state::kAttitude;
-  using error_state::kPosition;
-  const Eigen::Matrix3d crossed = by_attitude * block(kAttitude, kPosition);
-  return block(kPosition, kPosition) + crossed + crossed.transpose() +
-         by_attitude * block(kAttitude, kAttitude) * by_attitude.transpose();
+  const Eigen::Matrix3d crossed =
+      by_attitude * part(epoch.covariance, block::attitude, block::position);
+  return epoch.covariance_of(block::position) + crossed + crossed.transpose() +
+         by_attitude * epoch.covariance_of(block::attitude) * by_attitude.transpose();
 }
 
 DriftCollector::DriftCollector(std::vector<double> marks_s) : marks_s_(std::move(marks_s)) {}

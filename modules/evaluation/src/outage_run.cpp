@@ -115,8 +115,7 @@ class DriftMeter : public Sink {
       return_by_reference_.error(epoch.t_ns, error.position_n);
       return;
     }
-    const Eigen::Matrix3d covariance =
-        epoch.covariance.block<3, 3>(error_state::kPosition, error_state::kPosition);
+    const Eigen::Matrix3d covariance = epoch.covariance_of(block::position);
     by_reference_.add(*outage, epoch.t_ns, error.position_n,
                       normalized_squares(error.position_n, covariance));
   }

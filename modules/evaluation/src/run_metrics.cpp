@@ -107,11 +107,8 @@ void RunMetricsCollector::prediction(const PredictionResult& prediction) {
 }
 
 void RunMetricsCollector::reference_error(const Epoch& epoch, const ReferenceError& error) {
-  const auto covariance = [&epoch](int offset) -> Eigen::Matrix3d {
-    return epoch.covariance.block<3, 3>(offset, offset);
-  };
-  const Eigen::Matrix3d position = covariance(error_state::kPosition);
-  const Eigen::Matrix3d velocity = covariance(error_state::kVelocity);
+  const Eigen::Matrix3d position = epoch.covariance_of(block::position);
+  const Eigen::Matrix3d velocity = epoch.covariance_of(block::velocity);
   const int64_t t_ns = error.t_ns;
   consistency_.error(NormalizedKind::position, t_ns, error.position_n, position);
   if (error.velocity_n) {

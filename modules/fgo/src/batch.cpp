@@ -7,6 +7,16 @@
 
 namespace foucault {
 
+namespace {
+
+NavState without_slow(const NavState& x) {
+  NavState out = x;
+  out.slow.resize(0);
+  return out;
+}
+
+}  // namespace
+
 void BatchOptions::fields(ConfigFields& f) {
   f.text("model", model, {"full", "refined", "rough"}, "preintegration of method batch");
   f.text("start", start, {"ekf", "full", "refined", "rough"},
@@ -22,7 +32,7 @@ BatchRecorder::BatchRecorder(std::unique_ptr<Navigator> forward, const FgoOption
                              PreintegrationModel model, const ImuNoise& noise, const Layout& layout)
     : forward_(std::move(forward)),
       options_(options),
-      context_{LocalFrame(Geodetic{}), model, layout},
+      context_{LocalFrame(Geodetic{}), model, as_constants(layout)},
       noise_(noise) {
   require_noise(noise);
 }
@@ -32,30 +42,31 @@ void BatchRecorder::start(const Epoch& initial) {
   forward_->start(initial);
   if (chains_.empty()) context_.frame = LocalFrame(initial.position);
   integrator_.reset();
-  BatchChain& chain = chains_.emplace_back();
-  chain.prior = prior_from_covariance(to_node(initial, context_),
-                                      SlowVector::Zero(context_.layout.slow_size()),
-                                      covariance_w(initial, context_));
+  chains_.emplace_back().prior = prior_of(initial);
   add_node(initial);
+}
+
+SquareRootPrior BatchRecorder::prior_of(const Epoch& epoch) const {
+  const Epoch whole = with_slow_blocks(epoch, context_.layout);
+  return prior_from_covariance(to_node(whole, context_), whole.slow,
+                               turned(whole.covariance, context_.frame.R_w_n(whole.position)));
 }
 
 void BatchRecorder::propagate(const ImuIncrement& increment) {
   forward_->propagate(increment);
+  rates_.add(increment);
   integrator_->add(increment);
   open_.increments.push_back(increment);
 }
 
-void BatchRecorder::update(const GnssFix& fix) {
+void BatchRecorder::update(const ObservationPtr& observation) {
   mark();
-  forward_->update(fix);
+  forward_->update(observation);
   const Epoch now = forward_->epoch();
   BatchNode& node = chains_.back().nodes.back();
-  node.observations.push_back({gnss_position(fix), newest_rate(*integrator_)});
+  node.observations.push_back({observation, rates_.gyro_b});
   node.x = to_node(now, context_);
-  Passage& passage = passages_.back();
-  passage.filtered = {now.t_ns, now.position, now.velocity_n, now.q_n_b};
-  passage.filtered_bias = now.bias;
-  passage.p_b_a = fix.p_b_a;
+  passages_.back().filtered = without_slow(now);
   begin_interval(now);
 }
 
@@ -67,7 +78,7 @@ void BatchRecorder::loosen(const NodeMatrix& added) {
   const Epoch now = forward_->epoch();
   const NodeState& x = chain.nodes.back().x;
   if (chain.intervals.empty()) {
-    chain.prior = prior_from_covariance(x, chain.prior.slow_at, covariance_w(now, context_));
+    chain.prior = prior_of(now);
     return;
   }
   const NodeMatrix added_w = turned(added, context_.frame.R_w_n(now.position));
@@ -92,9 +103,7 @@ void BatchRecorder::add_node(const Epoch& now) {
   BatchNode& node = chains_.back().nodes.emplace_back();
   node.t_ns = now.t_ns;
   node.x = to_node(now, context_);
-  Passage& passage = passages_.emplace_back();
-  passage.predicted = passage.filtered = {now.t_ns, now.position, now.velocity_n, now.q_n_b};
-  passage.predicted_bias = passage.filtered_bias = now.bias;
+  passages_.push_back({without_slow(now), without_slow(now)});
   begin_interval(now);
 }
 
@@ -102,14 +111,14 @@ void BatchRecorder::begin_interval(const Epoch& now) {
   open_ = ImuInterval{};
   if (integrator_) open_.before = integrator_->previous();
   earth_ = earth_model(context_.model, context_.frame, chains_.back().nodes.back().x.p_w_b);
-  integrator_.emplace(noise_, now.bias, now.t_ns, open_.before);
+  integrator_.emplace(noise_, now.bias, now.t_ns, open_.before,
+                      scale_of(context_.layout, with_slow_blocks(now, context_.layout).slow));
 }
 
 /// The increments are kept if five sigmas of the bias may turn the interval too far.
 void BatchRecorder::close_interval() {
   const Preintegration pre = measured(*integrator_, context_.model);
-  const double bias_sigma =
-      std::sqrt(part(forward_->epoch().covariance.diagonal(), block::gyro_bias).maxCoeff());
+  const double bias_sigma = forward_->epoch().sigma_of(block::gyro_bias).maxCoeff();
   if (5 * bias_sigma * pre.dt < kReintegrationAngle) open_.increments = {};
   open_.factor = std::make_unique<PreintegrationFactor>(pre, earth_, context_.layout);
   chains_.back().intervals.push_back(std::move(open_));
@@ -119,11 +128,12 @@ std::vector<SmoothedEpoch> BatchRecorder::smoothed() {
   std::vector<SmoothedEpoch> out;
   out.reserve(passages_.size());
   for (BatchChain& chain : chains_) {
-    const BatchSolution solution = solve(chain, context_, options_, noise_);
+    BatchSolution solution = solve(chain, context_, options_, noise_);
     chain.intervals.clear();
     for (std::size_t k = 0; k < chain.nodes.size(); ++k) {
       const Epoch epoch = to_epoch(chain.nodes[k].t_ns, solution.x[k], solution.slow,
-                                   solution.covariance_w[k], context_);
+                                   solution.covariance_w[k].full(), context_);
+      solution.covariance_w[k] = {};
       out.push_back(smoothed_at(passages_[out.size()], epoch));
     }
   }
@@ -131,14 +141,9 @@ std::vector<SmoothedEpoch> BatchRecorder::smoothed() {
 }
 
 SmoothedEpoch BatchRecorder::smoothed_at(const Passage& passage, const Epoch& epoch) const {
-  const StrapdownState state{epoch.t_ns, epoch.position, epoch.velocity_n, epoch.q_n_b};
-  const auto error = [&](const StrapdownState& forward, const ImuBias& bias) {
-    NodeVector e;
-    e << difference(forward, state), epoch.bias.gyro - bias.gyro, epoch.bias.accel - bias.accel;
-    return e;
-  };
-  return {epoch, error(passage.predicted, passage.predicted_bias),
-          error(passage.filtered, passage.filtered_bias), passage.p_b_a};
+  const NavState state = without_slow(epoch);
+  return {epoch, PackedSymmetric(epoch.covariance), boxminus(state, passage.predicted),
+          boxminus(state, passage.filtered)};
 }
 
 std::unique_ptr<Estimator> make_batch_smoother(std::unique_ptr<Navigator> forward,

@@ -6,7 +6,6 @@
 
 #include "foucault/core/profile.h"
 #include "foucault/fgo/chain.h"
-#include "packed_triangle.h"
 #include "robust_loss.h"
 
 namespace foucault {
@@ -104,7 +103,7 @@ class BatchSolver {
   template <class Each>
   void go_back(const Each& each);
 
-  bool reintegrate_moved_bias(std::size_t k, const ImuNoise& noise);
+  bool reintegrate_turned(std::size_t k, const ImuNoise& noise);
   bool move_earth(std::size_t k);
 
   BatchChain& chain_;
@@ -291,18 +290,18 @@ bool BatchSolver::take_if_better(double predicted, double& share) {
 bool BatchSolver::renew_factors(const ImuNoise& noise) {
   bool renewed = false;
   for (std::size_t k = 0; k < chain_.intervals.size(); ++k) {
-    const bool integrated = reintegrate_moved_bias(k, noise);
+    const bool integrated = reintegrate_turned(k, noise);
     const bool placed = context_.model == PreintegrationModel::full && move_earth(k);
     renewed = renewed || integrated || placed;
   }
   return renewed;
 }
 
-bool BatchSolver::reintegrate_moved_bias(std::size_t k, const ImuNoise& noise) {
+bool BatchSolver::reintegrate_turned(std::size_t k, const ImuNoise& noise) {
   ImuInterval& interval = chain_.intervals[k];
   if (interval.increments.empty()) return false;
-  if (!bias_moved(interval.factor->motion(), at_.x[k].bias)) return false;
-  reintegrate(interval, at_.x[k].bias, noise, context_);
+  if (!has_turned(interval, at_.x[k].bias, at_.slow)) return false;
+  reintegrate(interval, at_.x[k].bias, at_.slow, noise, context_);
   return true;
 }
 
@@ -318,42 +317,17 @@ bool BatchSolver::move_earth(std::size_t k) {
 BatchSolution BatchSolver::solution() {
   const StageTimer timer(Stage::covariance);
   next_ = {};
-  NodeCovariances covariances(at_.x.size(), at_.slow.size());
+  std::vector<PackedSymmetric> covariances(at_.x.size());
   StateMatrix P = covariance(sweep().information);
-  covariances.set(at_.x.size() - 1, P);
+  covariances.back() = PackedSymmetric(P);
   go_back([&](std::size_t k, const Pivot& pivot) {
     P = pivot.covariance(P);
-    covariances.set(k, P);
+    covariances[k] = PackedSymmetric(P);
   });
   return {std::move(at_.x), at_.slow, std::move(covariances)};
 }
 
 }  // namespace
-
-NodeCovariances::NodeCovariances(std::size_t nodes, Eigen::Index slow)
-    : stride_(kNodeSize * (kNodeSize + 1) / 2 + kNodeSize * slow),
-      border_(SlowMatrix::Zero(slow, slow)),
-      numbers_(nodes * stride_) {}
-
-void NodeCovariances::set(std::size_t k, const StateMatrix& P) {
-  const Eigen::Index slow = border_.rows();
-  double* const own = numbers_.data() + k * stride_;
-  Eigen::Map<NodeBySlow>(pack_lower(node_part(P), own), kNodeSize, slow) =
-      P.topRightCorner(kNodeSize, slow);
-  border_ = P.bottomRightCorner(slow, slow);
-}
-
-StateMatrix NodeCovariances::operator[](std::size_t k) const {
-  const Eigen::Index slow = border_.rows();
-  NodeMatrix lower = NodeMatrix::Zero();
-  const double* const crossed = unpack_lower(numbers_.data() + k * stride_, lower);
-  StateMatrix P(kNodeSize + slow, kNodeSize + slow);
-  node_part(P) = lower.selfadjointView<Eigen::Lower>();
-  P.topRightCorner(kNodeSize, slow) = Eigen::Map<const NodeBySlow>(crossed, kNodeSize, slow);
-  P.bottomLeftCorner(slow, kNodeSize) = P.topRightCorner(kNodeSize, slow).transpose();
-  P.bottomRightCorner(slow, slow) = border_;
-  return P;
-}
 
 BatchSolution solve(BatchChain& chain, const GraphContext& context, const FgoOptions& options,
                     const ImuNoise& noise) {

@@ -7,20 +7,15 @@ Preintegration measured(const Preintegrator& integrator, PreintegrationModel mod
                                             : integrator.result();
 }
 
-Eigen::Vector3d newest_rate(const Preintegrator& integrator) {
-  const std::optional<ImuIncrement>& newest = integrator.previous();
-  if (!newest || !(newest->dt() > 0)) return Eigen::Vector3d::Zero();
-  return newest->dtheta_b / newest->dt();
+bool has_turned(const ImuInterval& interval, const ImuBias& bias, const SlowVector& slow) {
+  return interval.factor->turned_by(bias, slow) >= kReintegrationAngle;
 }
 
-bool bias_moved(const PreintegratedMotion& motion, const ImuBias& bias) {
-  return (bias.gyro - motion.bias.gyro).norm() * motion.dt >= kReintegrationAngle;
-}
-
-void reintegrate(ImuInterval& interval, const ImuBias& bias, const ImuNoise& noise,
-                 const GraphContext& context) {
+void reintegrate(ImuInterval& interval, const ImuBias& bias, const SlowVector& slow,
+                 const ImuNoise& noise, const GraphContext& context) {
   const EarthModel earth = interval.factor->earth();
-  Preintegrator integrator(noise, bias, interval.factor->motion().t_begin_ns, interval.before);
+  Preintegrator integrator(noise, bias, interval.factor->t_begin_ns(), interval.before,
+                           scale_of(context.layout, slow));
   for (const ImuIncrement& increment : interval.increments) integrator.add(increment);
   Preintegration pre = measured(integrator, context.model);
   if (interval.loosened) pre.covariance += *interval.loosened;

@@ -36,34 +36,21 @@ LocalNode to_nav(const NodeState& x, const SlowVector& slow, const GraphContext&
   return local;
 }
 
-NodeState to_node(const Epoch& epoch, const GraphContext& context) {
-  const Eigen::Matrix3d R_w_n = context.frame.R_w_n(epoch.position);
-  NodeState x;
-  x.p_w_b = context.frame.to_local(epoch.position);
-  x.v_w_b = R_w_n * epoch.velocity_n;
-  x.q_w_b = (attitude_turn(R_w_n, context.model) * epoch.q_n_b).normalized();
-  x.bias = epoch.bias;
-  return x;
-}
-
-StateMatrix covariance_w(const Epoch& epoch, const GraphContext& context) {
-  const int slow = context.layout.slow_size();
-  StateMatrix P = StateMatrix::Zero(kNodeSize + slow, kNodeSize + slow);
-  node_part(P) = epoch.covariance;
-  P.bottomRightCorner(slow, slow) = context.layout.prior();
-  return turned(P, context.frame.R_w_n(epoch.position));
+NodeState to_node(const NavState& x, const GraphContext& context) {
+  const Eigen::Matrix3d R_w_n = context.frame.R_w_n(x.position);
+  NodeState node;
+  node.p_w_b = context.frame.to_local(x.position);
+  node.v_w_b = R_w_n * x.velocity_n;
+  node.q_w_b = (attitude_turn(R_w_n, context.model) * x.q_n_b).normalized();
+  node.bias = x.bias;
+  return node;
 }
 
 Epoch to_epoch(int64_t t_ns, const NodeState& x, const SlowVector& slow,
                const StateMatrix& covariance_w, const GraphContext& context) {
   const LocalNode local = to_nav(x, slow, context);
-  Epoch epoch;
+  Epoch epoch{local.x, turned(covariance_w, local.R_n_w)};
   epoch.t_ns = t_ns;
-  epoch.position = local.x.position;
-  epoch.velocity_n = local.x.velocity_n;
-  epoch.q_n_b = local.x.q_n_b;
-  epoch.bias = local.x.bias;
-  epoch.covariance = node_part(turned(covariance_w, local.R_n_w));
   return epoch;
 }
 

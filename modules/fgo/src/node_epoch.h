@@ -1,8 +1,7 @@
 #pragma once
 
 #include "foucault/fgo/graph_context.h"
-#include "foucault/state/nav_state.h"
-#include "foucault/state/result.h"
+#include "foucault/state/epoch.h"
 
 /// Between a node's state in w and the local NED of its place.
 namespace foucault {
@@ -20,10 +19,7 @@ struct LocalNode {
 };
 LocalNode to_nav(const NodeState& x, const SlowVector& slow, const GraphContext& context);
 
-NodeState to_node(const Epoch& epoch, const GraphContext& context);
-
-/// Covariance of an epoch in w, with that of the slow blocks it may lack.
-StateMatrix covariance_w(const Epoch& epoch, const GraphContext& context);
+NodeState to_node(const NavState& x, const GraphContext& context);
 
 Epoch to_epoch(int64_t t_ns, const NodeState& x, const SlowVector& slow,
                const StateMatrix& covariance_w, const GraphContext& context);

@@ -1,19 +1,19 @@
 #include "foucault/fgo/preintegration_factor.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/LU>
 #include <stdexcept>
 
+#include "foucault/core/so3.h"
 #include "packed_triangle.h"
 
 namespace foucault {
 namespace {
 
-struct WithCovariance : PreintegratedMotion {
+struct Whole : PreintegratedMotion, ScaledMotion {
   NodeMatrix covariance;
 };
-static_assert(sizeof(WithCovariance) == sizeof(Preintegration),
-              "PreintegratedMotion and copy_motion have all members of Preintegration");
+static_assert(sizeof(Whole) == sizeof(Preintegration),
+              "what is copied here are all members of Preintegration");
 
 template <class From, class To>
 void copy_motion(const From& from, To& to) {
@@ -28,11 +28,15 @@ void copy_motion(const From& from, To& to) {
   to.bias = from.bias;
   to.gyro_bias_decay = from.gyro_bias_decay;
   to.accel_bias_decay = from.accel_bias_decay;
-  to.J_dp_bg = from.J_dp_bg;
-  to.J_dp_ba = from.J_dp_ba;
-  to.J_dv_bg = from.J_dv_bg;
-  to.J_dv_ba = from.J_dv_ba;
-  to.J_dq_bg = from.J_dq_bg;
+  to.by_gyro_bias = from.by_gyro_bias;
+  to.by_accel_bias = from.by_accel_bias;
+}
+
+template <class From, class To>
+void copy_scaled(const From& from, To& to) {
+  to.scale = from.scale;
+  to.by_gyro_scale = from.by_gyro_scale;
+  to.by_accel_scale = from.by_accel_scale;
 }
 
 NodeMatrix inverse_cholesky(const NodeMatrix& covariance) {
@@ -44,20 +48,26 @@ NodeMatrix inverse_cholesky(const NodeMatrix& covariance) {
   return inverse;
 }
 
-/// Columns of the border. Only scale factors of the IMU act on an interval.
-NodeBySlow slow_columns(const MotionResidual& /*m*/, int slow_size) {
-  return NodeBySlow::Zero(kNodeSize, slow_size);
-}
-
 }  // namespace
 
 PreintegrationFactor::PreintegrationFactor(const Preintegration& pre, const EarthModel& earth,
                                            const Layout& layout)
-    : earth_(earth), slow_size_(layout.slow_size()) {
+    : earth_(earth), layout_(layout) {
   copy_motion(pre, motion_);
+  if (pre.scale) {
+    scaled_ = std::make_unique<ScaledMotion>();
+    copy_scaled(pre, *scaled_);
+  }
   pack_lower(inverse_cholesky(pre.covariance), sqrt_information_.data());
   set_num_residuals(kNodeSize);
-  *mutable_parameter_block_sizes() = block_sizes(2, slow_size_);
+  *mutable_parameter_block_sizes() = block_sizes(2, layout.slow_size());
+}
+
+double PreintegrationFactor::turned_by(const ImuBias& bias, const SlowVector& slow) const {
+  const double by_bias = (bias.gyro - motion_.bias.gyro).norm() * motion_.dt;
+  if (!scaled_) return by_bias;
+  const Eigen::Vector3d change = layout_.imu_scale(slow).gyro - scaled_->scale->gyro;
+  return by_bias + change.cwiseProduct(so3::log(motion_.dq)).norm();
 }
 
 NodeMatrix PreintegrationFactor::sqrt_information() const {
@@ -66,9 +76,15 @@ NodeMatrix PreintegrationFactor::sqrt_information() const {
   return root;
 }
 
-Preintegration PreintegrationFactor::preintegration() const {
+Preintegration PreintegrationFactor::without_covariance() const {
   Preintegration pre;
   copy_motion(motion_, pre);
+  if (scaled_) copy_scaled(*scaled_, pre);
+  return pre;
+}
+
+Preintegration PreintegrationFactor::preintegration() const {
+  Preintegration pre = without_covariance();
   const NodeMatrix root =
       sqrt_information().triangularView<Eigen::Lower>().solve(NodeMatrix::Identity());
   pre.covariance = root * root.transpose();
@@ -76,27 +92,24 @@ Preintegration PreintegrationFactor::preintegration() const {
 }
 
 IntervalRows PreintegrationFactor::linearize(const NodeState& x0, const NodeState& x1,
-                                             const SlowVector& /*slow*/) const {
-  Preintegration pre;
-  copy_motion(motion_, pre);
-  const MotionResidual m = motion_residual(x0, x1, pre, earth_);
+                                             const SlowVector& slow) const {
+  const MotionResidual m =
+      motion_residual(x0, x1, without_covariance(), earth_, layout_.imu_scale(slow));
   const NodeMatrix root = sqrt_information();
   const auto whiten = root.triangularView<Eigen::Lower>();
   IntervalRows out;
   out.r.noalias() = whiten * m.r;
   out.J_x0.noalias() = whiten * m.J_x0;
   out.J_x1.noalias() = whiten * m.J_x1;
-  out.J_slow = slow_columns(m, slow_size_);
-  if (slow_size_ > 0) out.J_slow = whiten * out.J_slow;
+  out.J_slow = slow_jacobian(m, layout_);
+  if (scaled_) out.J_slow = whiten * out.J_slow;
   return out;
 }
 
 NodeVector PreintegrationFactor::residual(const NodeState& x0, const NodeState& x1,
-                                          const SlowVector& /*slow*/) const {
-  Preintegration pre;
-  copy_motion(motion_, pre);
+                                          const SlowVector& slow) const {
   return sqrt_information().triangularView<Eigen::Lower>() *
-         motion_residual_value(x0, x1, pre, earth_);
+         motion_residual_value(x0, x1, without_covariance(), earth_, layout_.imu_scale(slow));
 }
 
 bool PreintegrationFactor::Evaluate(double const* const* blocks, double* residual,
@@ -112,24 +125,8 @@ bool PreintegrationFactor::Evaluate(double const* const* blocks, double* residua
   Eigen::Map<NodeVector>{residual} = rows.r;
   if (jacobians[0] != nullptr) write_node_jacobian(rows.J_x0, blocks[0], jacobians[0]);
   if (jacobians[1] != nullptr) write_node_jacobian(rows.J_x1, blocks[1], jacobians[1]);
-  if (slow_size_ > 0 && jacobians[2] != nullptr) write_border_jacobian(rows.J_slow, jacobians[2]);
+  if (slow.size() > 0 && jacobians[2] != nullptr) write_border_jacobian(rows.J_slow, jacobians[2]);
   return true;
-}
-
-StateMatrix predict_covariance(const NodeState& x0, const NodeState& x1, const SlowVector& /*slow*/,
-                               const Preintegration& pre, const EarthModel& earth,
-                               const Layout& layout, const StateMatrix& covariance) {
-  // r(x0, x1, border) = e: J1 d1 = e - J0 d0 - Js ds. J1 is block lower triangular with invertible
-  // blocks.
-  const MotionResidual m = motion_residual(x0, x1, pre, earth);
-  const Eigen::PartialPivLU<NodeMatrix> J1(m.J_x1);
-  StateMatrix F = StateMatrix::Identity(layout.size(), layout.size());
-  node_part(F) = -J1.solve(m.J_x0);
-  F.topRightCorner(kNodeSize, layout.slow_size()) = -J1.solve(slow_columns(m, layout.slow_size()));
-  const NodeMatrix B = J1.solve(NodeMatrix::Identity());
-  StateMatrix P = F * covariance * F.transpose();
-  node_part(P) += B * pre.covariance * B.transpose();
-  return 0.5 * (P + P.transpose());
 }
 
 }  // namespace foucault

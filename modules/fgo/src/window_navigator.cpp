@@ -27,7 +27,7 @@ constexpr int kRounds = 8;
 WindowNavigator::WindowNavigator(const FgoOptions& options, PreintegrationModel model,
                                  const ImuNoise& noise, const Layout& layout)
     : options_(options),
-      context_{LocalFrame(Geodetic{}), model, layout},
+      context_{LocalFrame(Geodetic{}), model, as_constants(layout)},
       noise_(noise),
       loss_(make_loss(options)),
       slow_(SlowVector::Zero(layout.slow_size())) {
@@ -39,8 +39,10 @@ WindowNavigator::~WindowNavigator() = default;
 void WindowNavigator::start(const Epoch& initial) {
   integrator_.reset();
   context_.frame = LocalFrame(initial.position);
-  slow_.setZero();
-  begin_window(initial.t_ns, to_node(initial, context_), foucault::covariance_w(initial, context_));
+  const Epoch whole = with_slow_blocks(initial, context_.layout);
+  slow_ = whole.slow;
+  begin_window(initial.t_ns, to_node(whole, context_),
+               turned(whole.covariance, context_.frame.R_w_n(whole.position)));
 }
 
 /// A window of one node.
@@ -69,6 +71,7 @@ std::unique_ptr<Navigator> WindowNavigator::ahead(double scale) const {
   auto copy = std::make_unique<WindowNavigator>(options_, context_.model, noise_, context_.layout);
   copy->context_.frame = context_.frame;
   copy->slow_ = slow_;
+  copy->rates_ = rates_;
   copy->integrator_ = integrator_;  // for the increment before the first
   copy->begin_window(integrator_->t_end_ns(), now.x, scale * scale * now.covariance);
   return copy;
@@ -79,10 +82,12 @@ void WindowNavigator::begin_interval() {
   if (integrator_) open_.before = integrator_->previous();
   const Node& node = nodes_.back();
   earth_ = earth_model(context_.model, context_.frame, node.x.p_w_b);
-  integrator_.emplace(noise_, node.x.bias, node.t_ns, open_.before);
+  integrator_.emplace(noise_, node.x.bias, node.t_ns, open_.before,
+                      scale_of(context_.layout, slow_));
 }
 
 void WindowNavigator::propagate(const ImuIncrement& increment) {
+  rates_.add(increment);
   integrator_->add(increment);
   open_.increments.push_back(increment);
 }
@@ -92,17 +97,15 @@ WindowNavigator::Prediction WindowNavigator::prediction() const {
   if (at_node()) return {x0, covariance_};
   const StageTimer timer(Stage::covariance);
   const Preintegration pre = measured(*integrator_, context_.model);
-  const NodeState x1 = predict(x0, pre, earth_);
-  return {x1, predict_covariance(x0, x1, slow_, pre, earth_, context_.layout, covariance_)};
+  const NodeState x1 = predict(x0, pre, earth_, context_.layout.imu_scale(slow_));
+  return {x1, predict_covariance(x0, x1, pre, earth_, covariance_, context_.layout, slow_)};
 }
 
-Innovation WindowNavigator::innovation(const GnssFix& fix) const {
+Innovation WindowNavigator::innovation(const Observation& observation) const {
   const Prediction predicted = prediction();
   const LocalNode local = to_nav(predicted.x, slow_, context_);
-  const Linearized z =
-      gnss_position(fix)->linearize(local.x, newest_rate(*integrator_), context_.layout);
-  const StateMatrix covariance_n = turned(predicted.covariance, local.R_n_w);
-  return {z.r, z.H * covariance_n * z.H.transpose() + z.R};
+  return innovation_of(observation.linearize(local.x, rates_.gyro_b, context_.layout),
+                       turned(predicted.covariance, local.R_n_w));
 }
 
 Epoch WindowNavigator::epoch() const {
@@ -113,11 +116,11 @@ Epoch WindowNavigator::epoch() const {
 void WindowNavigator::update(const ObservationPtr& observation) {
   if (!at_node()) {
     const Preintegration pre = measured(*integrator_, context_.model);
-    add_node(predict(nodes_.back().x, pre, earth_), pre);
+    add_node(predict(nodes_.back().x, pre, earth_, context_.layout.imu_scale(slow_)), pre);
   }
   Node& node = nodes_.back();
-  node.observations.emplace_back(NodeObservation{observation, newest_rate(*integrator_)}, node.x,
-                                 slow_, context_);
+  node.observations.emplace_back(NodeObservation{observation, rates_.gyro_b}, node.x, slow_,
+                                 context_);
   solve();
   marginalize_old();
   begin_interval();  // at the bias just estimated
@@ -213,15 +216,15 @@ void WindowNavigator::carry_back(std::size_t from) {
 }
 
 /// The first node whose quadratic form does not hold any more; the number of nodes if all do.
-/// Intervals whose bias has moved are integrated again.
+/// Intervals whose bias or scale has moved are integrated again.
 std::size_t WindowNavigator::first_unsettled() {
   const StageTimer timer(Stage::solve);
   std::size_t first = nodes_.size();
   for (std::size_t k = nodes_.size(); k-- > 0;) {
     const Node& node = nodes_[k];
-    if (k < intervals_.size() && bias_moved(intervals_[k].factor->motion(), node.x.bias)) {
+    if (k < intervals_.size() && has_turned(intervals_[k], node.x.bias, slow_)) {
       const StageTimer again(Stage::preintegrate);
-      reintegrate(intervals_[k], node.x.bias, noise_, context_);
+      reintegrate(intervals_[k], node.x.bias, slow_, noise_, context_);
       first = k + 1;
     }
     if (has_moved(node)) first = k;

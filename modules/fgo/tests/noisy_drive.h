@@ -10,6 +10,8 @@
 #include "foucault/fgo/fgo_options.h"
 #include "foucault/geodesy/local_frame.h"
 #include "foucault/inertial/navigator.h"
+#include "foucault/measurement/gnss_position.h"
+#include "foucault/preintegration/motion.h"
 
 namespace foucault::testing {
 
@@ -94,7 +96,7 @@ class NoisyDrive : public ::testing::Test {
       if (second >= outage_begin && second < outage_end)
         navigator.hold();
       else
-        navigator.update(fix_at(second, 0.02));
+        navigator.update(gnss_position(fix_at(second, 0.02)));
       each(second);
     }
   }

@@ -112,7 +112,7 @@ TEST_F(WindowNavigatorTest, OneStateWindowIsAnIteratedEkf) {
     const ImuIncrement increment = noisy_increment(k * 10'000'000LL, (k + 1) * 10'000'000LL);
     const GnssFix fix = fix_at(0.01 * (k + 1), 0.02);
     navigator.propagate(increment);
-    navigator.update(fix);
+    navigator.update(gnss_position(fix));
     Preintegrator pre(test_noise(), ekf.x().bias, increment.t_begin_ns, before);
     pre.add(increment);
     ekf.predict(pre.result());
@@ -166,7 +166,7 @@ TEST_F(WindowNavigatorTest, RobustLossShrugsOffAnOutlier) {
     navigator.propagate(noisy_increment(30'000'000'000, 30'010'000'000));
     GnssFix outlier = fix_at(30.01, 0.02);
     outlier.antenna.height += 10;
-    navigator.update(outlier);
+    navigator.update(gnss_position(outlier));
     error_with[which++] = error(navigator.epoch()).head<3>().norm();
   }
   EXPECT_GT(error_with[0], 0.3);
@@ -198,10 +198,10 @@ TEST_F(WindowNavigatorTest, InnovationIsWhiteWithItsCovariance) {
     for (int64_t t = (second - 1) * 100LL; t < second * 100LL; ++t)
       navigator.propagate(noisy_increment(t * 10'000'000, (t + 1) * 10'000'000));
     const GnssFix fix = fix_at(second, 0.02);
-    const Innovation innovation = navigator.innovation(fix);
-    nis += innovation.value_n.dot(innovation.covariance.ldlt().solve(innovation.value_n));
+    const Innovation innovation = navigator.innovation(*gnss_position(fix));
+    nis += innovation.value.dot(innovation.covariance.ldlt().solve(innovation.value));
     ++count;
-    navigator.update(fix);
+    navigator.update(gnss_position(fix));
   }
   EXPECT_NEAR(nis, 3.0 * count, 3.3 * std::sqrt(2 * 3.0 * count));
 }
@@ -225,7 +225,7 @@ TEST_F(WindowNavigatorTest, ConvergesFromAttitudesFarOff) {
       for (int64_t t = begin_ns; t < begin_ns + 1'000'000'000LL; t += 10'000'000) {
         navigator.propagate(motion_.increment(t, t + 10'000'000));
       }
-      navigator.update(fix_at(second, 0.02));
+      navigator.update(gnss_position(fix_at(second, 0.02)));
       const NodeVector e = error(navigator.epoch());
       if (second < 5) continue;  // the lever arm turns with the attitude
       EXPECT_LT(part(e, block::position).norm(), 0.15) << seed << " " << second;
@@ -249,7 +249,7 @@ TEST_F(WindowNavigatorTest, ALargeBiasIsIntegratedAnew) {
       increment.dtheta_b += bias * increment.dt();
       navigator.propagate(increment);
     }
-    navigator.update(fix_at(second, 0.02));
+    navigator.update(gnss_position(fix_at(second, 0.02)));
   }
   const Epoch end = navigator.epoch();
   EXPECT_LT((end.bias.gyro - bias).norm(), 3e-4);
@@ -271,14 +271,14 @@ TEST_F(WindowNavigatorTest, OneAheadForeseesWhatItselfWillSay) {
       n->propagate(increment);
     }
   }
-  const GnssFix fix = fix_at(14, 0.02);
-  const Innovation own = navigator.innovation(fix);
-  EXPECT_LT((ahead->innovation(fix).value_n - own.value_n).norm(), 1e-6);
-  EXPECT_LT((ahead->innovation(fix).covariance - own.covariance).norm(),
+  const ObservationPtr fix = gnss_position(fix_at(14, 0.02));
+  const Innovation own = navigator.innovation(*fix);
+  EXPECT_LT((ahead->innovation(*fix).value - own.value).norm(), 1e-6);
+  EXPECT_LT((ahead->innovation(*fix).covariance - own.covariance).norm(),
             1e-6 * own.covariance.norm());
-  EXPECT_LT((doubtful->innovation(fix).value_n - own.value_n).norm(), 1e-6);
+  EXPECT_LT((doubtful->innovation(*fix).value - own.value).norm(), 1e-6);
   ahead->update(fix);  // its own affair
-  EXPECT_EQ(navigator.innovation(fix).value_n, own.value_n);
+  EXPECT_EQ(navigator.innovation(*fix).value, own.value);
   // Three times the sigma, but for the noise of two seconds and of the fix.
   const double grown = doubtful->epoch().covariance(block::attitude.offset, block::attitude.offset);
   EXPECT_NEAR(grown / navigator.epoch().covariance(block::attitude.offset, block::attitude.offset),
@@ -297,7 +297,7 @@ TEST_F(WindowNavigatorTest, WhatLoosensItIsAddedToItsCovariance) {
   const Epoch after = navigator.epoch();
   EXPECT_LT((after.covariance - before.covariance - added).norm(), 1e-6);
   EXPECT_LT((error(after) - error(before)).norm(), 1e-6);
-  navigator.update(fix_at(12, 0.02));
+  navigator.update(gnss_position(fix_at(12, 0.02)));
   EXPECT_LT(error(navigator.epoch()).head<3>().norm(), 0.1);
 }
 

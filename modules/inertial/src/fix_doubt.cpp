@@ -7,6 +7,7 @@
 
 #include "foucault/state/blocks.h"
 #include "foucault/core/time.h"
+#include "foucault/measurement/gnss_position.h"
 #include "foucault/geodesy/local_frame.h"
 #include "foucault/inertial/increments.h"
 
@@ -31,14 +32,13 @@ constexpr double kLineMemory = 10;
 constexpr double kGravity = 9.8;
 
 Vector3d velocity_variance(const Epoch& epoch) {
-  return epoch.covariance.diagonal().segment<3>(error_state::kVelocity);
+  return part(epoch.covariance.diagonal(), block::velocity);
 }
 
 /// What the state does not know of its acceleration: tilt and accelerometer bias [m/s^2].
 double acceleration_sigma(const Epoch& epoch) {
-  const Vector15d variance = epoch.covariance.diagonal();
-  return std::sqrt(kGravity * kGravity * variance.segment<3>(error_state::kAttitude).maxCoeff() +
-                   variance.segment<3>(error_state::kAccelBias).maxCoeff());
+  return std::hypot(kGravity * epoch.sigma_of(block::attitude).maxCoeff(),
+                    epoch.sigma_of(block::accel_bias).maxCoeff());
 }
 
 /// At the same rates.
@@ -75,8 +75,8 @@ FixDoubt::FixDoubt(const GnssOptions& options, const FixJudge& judge, const Navi
       time_ns_(fix.t_ns),
       last_fix_ns_(fix.t_ns),
       from_ns_(fix.t_ns) {
-  const Innovation innovation = navigator.innovation(fix);
-  begin_innovation_n_ = innovation.value_n;
+  const Innovation innovation = navigator.innovation(GnssPosition(fix));
+  begin_innovation_n_ = innovation.value;
   begin_variance_n_ = innovation.covariance.diagonal();
   if (returns) trial_.emplace(navigator, fix, judge.level());
   meet(fix);
@@ -125,8 +125,8 @@ void FixDoubt::propagate(const ImuIncrement& increment) {
 }
 
 void FixDoubt::meet(const GnssFix& fix) {
-  const Innovation innovation = ahead_->innovation(fix);
-  const double square = mahalanobis_squared(innovation.value_n, innovation.covariance);
+  const Innovation innovation = ahead_->innovation(GnssPosition(fix));
+  const double square = mahalanobis_squared(innovation.value, innovation.covariance);
   const double since_last = seconds_between(last_fix_ns_, fix.t_ns);
   last_fix_ns_ = fix.t_ns;
   if (seconds_between(begin_.t_ns, fix.t_ns) > kLongestDoubt) {
@@ -140,7 +140,7 @@ void FixDoubt::meet(const GnssFix& fix) {
     return;
   }
   leave_out(fix);
-  const Rejected rejected{fix.t_ns, innovation.value_n, innovation.covariance,
+  const Rejected rejected{fix.t_ns, innovation.value, innovation.covariance,
                           fix.position_covariance.diagonal(), square};
   if (trial_) return meet_returning(rejected);
   if (recent_.empty() || seconds_between(recent_.back().t_ns, fix.t_ns) >= kThinning) {
@@ -274,13 +274,13 @@ void FixDoubt::begin_line(const InnovationLine& line) {
 
 void FixDoubt::follow_line(const GnssFix& fix, const Innovation& innovation, double since_last) {
   const Vector3d error_n = line_->at(fix.t_ns);
-  const Vector3d left_n = innovation.value_n - error_n;
+  const Vector3d left_n = innovation.value - error_n;
   const Eigen::Matrix3d variance_n = line_->variance_at(fix.t_ns).asDiagonal();
   const Eigen::Matrix3d& S = innovation.covariance;
-  const bool is_back = judge_.passes(mahalanobis_squared(innovation.value_n, S));
+  const bool is_back = judge_.passes(mahalanobis_squared(innovation.value, S));
   const bool is_on_line = judge_.passes(mahalanobis_squared(left_n, S + variance_n));
   const bool line_is_nearer =
-      mahalanobis_squared(left_n, S) < mahalanobis_squared(innovation.value_n, S);
+      mahalanobis_squared(left_n, S) < mahalanobis_squared(innovation.value, S);
   if (is_back && !(is_on_line && line_is_nearer)) return end_line(fix);
   leave_out(fix);
   if (!is_on_line) return miss_line();
@@ -306,7 +306,7 @@ void FixDoubt::use_corrected(const Vector3d& error_n, const Eigen::Matrix3d& var
   decision.corrected.antenna = LocalFrame(decision.fix.antenna).to_geodetic(-error_n);
   const double times = std::max(1.0, kLineMemory / std::max(0.01, since_last));
   decision.corrected.position_covariance += times * variance_n;
-  ahead_->update(decision.corrected);
+  ahead_->update(gnss_position(decision.corrected));
 }
 
 void FixDoubt::miss_line() {
@@ -335,7 +335,7 @@ void FixDoubt::believe_all() {
 void FixDoubt::blame_state() {
   believe_all();
   outcome_.state_was_wrong = trial_.has_value();
-  const Matrix15d added = looseness();
+  const NodeMatrix added = looseness();
   Pass best;
   if (!trial_) {
     std::unique_ptr<Navigator> loosened = start_->ahead(1);
@@ -375,10 +375,10 @@ FixDoubt::Pass FixDoubt::drive_again(std::unique_ptr<Navigator> navigator) const
     }
     GnssFix trusted = decision.fix;
     trusted.position_covariance *= judge_.level();
-    const FixLikelihood likelihood = likelihood_of(navigator->innovation(trusted));
+    const FixLikelihood likelihood = likelihood_of(navigator->innovation(GnssPosition(trusted)));
     pass.log_probability += likelihood.log_density;
     pass.is_true.push_back(likelihood.is_true);
-    if (likelihood.is_true) navigator->update(trusted);
+    if (likelihood.is_true) navigator->update(gnss_position(trusted));
   }
   return pass;
 }
@@ -391,8 +391,8 @@ void FixDoubt::move_state() {
       "fixes off by {:.2f} m since {} have stayed so and are believed", off, when(begin_.t_ns)));
   outcome_.state_was_wrong = true;
   if (!trial_) {
-    outcome_.loosened = Matrix15d::Zero();
-    outcome_.loosened->diagonal().segment<3>(error_state::kPosition).setConstant(off * off);
+    outcome_.loosened = NodeMatrix::Zero();
+    part(outcome_.loosened->diagonal(), block::position).setConstant(off * off);
   }
   believe_all();
 }
@@ -409,18 +409,19 @@ void FixDoubt::settle_at_end() {
 
 /// As much doubt about position, velocity and attitude as the fixes show; the sigmas of biases grow
 /// to the double.
-Matrix15d FixDoubt::looseness() const {
-  using namespace error_state;
+NodeMatrix FixDoubt::looseness() const {
   constexpr double kSpeed = 3;      // [m/s]: an error of the velocity beyond is one of attitude
   constexpr double kLargest = 0.5;  // [rad]
   const InnovationLine line = line_ ? *line_ : recent_.size() > 2 ? fit() : InnovationLine{};
   const double rate = line.rate_n.norm();
   const double turn = std::min(kLargest, rate / std::max(kSpeed, begin_.velocity_n.norm()));
-  Matrix15d added = Matrix15d::Zero();
-  added.diagonal().segment<3>(kPosition).setConstant(begin_innovation_n_.squaredNorm());
-  added.diagonal().segment<3>(kVelocity).setConstant(rate * rate + 0.01);
-  added.diagonal().segment<3>(kAttitude).setConstant(turn * turn);
-  added.diagonal().tail<6>() = 3 * begin_.covariance.diagonal().tail<6>();
+  NodeMatrix added = NodeMatrix::Zero();
+  auto variance = added.diagonal();
+  part(variance, block::position).setConstant(begin_innovation_n_.squaredNorm());
+  part(variance, block::velocity).setConstant(rate * rate + 0.01);
+  part(variance, block::attitude).setConstant(turn * turn);
+  part(variance, block::gyro_bias) = 3 * begin_.sigma_of(block::gyro_bias).cwiseAbs2();
+  part(variance, block::accel_bias) = 3 * begin_.sigma_of(block::accel_bias).cwiseAbs2();
   return added;
 }
 

@@ -39,7 +39,7 @@ struct FixDecision {
 /// What became of a doubt.
 struct DoubtOutcome {
   std::vector<FixDecision> fixes;     ///< from the one that raised it on, in order
-  std::optional<Matrix15d> loosened;  ///< what the state is to be loosened by before the first
+  std::optional<NodeMatrix> loosened;  ///< what the state is to be loosened by before the first
   bool state_was_wrong = false;
   std::vector<double> level;         ///< normalized squares that fixes were found to have
   std::vector<std::string> notices;  ///< one line each
@@ -116,7 +116,7 @@ class FixDoubt {
   void move_state();
   void settle_at_end();
 
-  Matrix15d looseness() const;
+  NodeMatrix looseness() const;
   InnovationLine fit() const;
   bool scatters_about_zero() const;
   bool lies_on(const InnovationLine& line) const;

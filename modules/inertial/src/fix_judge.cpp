@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -19,17 +20,26 @@ constexpr std::size_t kLevelMemory = 31;  // fixes
 constexpr std::size_t kLevelNeeds = 5;
 constexpr double kBelievedMemory = 60;  // fixes
 constexpr double kLargestShare = 10;    // of one fix, times the level
-constexpr double kMedianChiSquare3 = 2.366;
+/// Survival function of the chi-square distribution with up to 3 degrees of freedom.
+double chi_square_tail(double x, int dimension) {
+  if (dimension == 2) return std::exp(-x / 2);
+  const double one = std::erfc(std::sqrt(x / 2));
+  return dimension == 1 ? one : one + std::sqrt(2 * x / kPi) * std::exp(-x / 2);
+}
 
-/// Survival function of the chi-square distribution with 3 degrees of freedom.
-double chi_square_3_tail(double x) {
-  return std::erfc(std::sqrt(x / 2)) + std::sqrt(2 * x / kPi) * std::exp(-x / 2);
+double chi_square_median(int dimension) {
+  constexpr std::array<double, 4> kMedian{0, 0.455, 1.386, 2.366};
+  return kMedian[static_cast<std::size_t>(dimension)];
 }
 
 }  // namespace
 
 double mahalanobis_squared(const Eigen::Vector3d& value, const Eigen::Matrix3d& covariance) {
   return value.dot(Eigen::LLT<Eigen::Matrix3d>(covariance).solve(value));
+}
+
+double mahalanobis_squared(const Innovation& innovation) {
+  return innovation.value.dot(innovation.covariance.llt().solve(innovation.value));
 }
 
 void FixJudge::start(int64_t t_ns) {
@@ -49,7 +59,7 @@ double FixJudge::level() const {
   std::vector<double> sorted(squares_.begin(), squares_.end());
   const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
   std::nth_element(sorted.begin(), middle, sorted.end());
-  return std::max(level, *middle / kMedianChiSquare3);
+  return std::max(level, *middle / chi_square_median(dimension_));
 }
 
 void FixJudge::remember(double square) {
@@ -58,15 +68,15 @@ void FixJudge::remember(double square) {
 }
 
 bool FixJudge::passes(double square) const {
-  return chi_square_3_tail(square / level()) >= options_.gate_false_alarm;
+  return chi_square_tail(square / level(), dimension_) >= options_.gate_false_alarm;
 }
 
 bool FixJudge::believes(int64_t t_ns, const Innovation& innovation) {
-  const double square = mahalanobis_squared(innovation.value_n, innovation.covariance);
+  const double square = mahalanobis_squared(innovation);
   const bool passed = passes(square);
   remember(square);
   if (!passed) return gate_is_open(t_ns);
-  const double share = std::min(square / 3, kLargestShare * level());
+  const double share = std::min(square / dimension_, kLargestShare * level());
   believed_level_ += (share - believed_level_) / kBelievedMemory;
   return true;
 }

@@ -11,15 +11,19 @@ namespace foucault {
 
 /// e' S^-1 e.
 double mahalanobis_squared(const Eigen::Vector3d& value, const Eigen::Matrix3d& covariance);
+double mahalanobis_squared(const Innovation& innovation);
 
-/// Decides whether a fix agrees with the prediction: by a chi-square test, relative to the median
+/// Decides whether measurements of one kind, fixes for example, agree with the prediction: by the
+/// chi-square test of their dimension, relative to the median
 /// of recent normalized innovations and to the mean of recent believed ones where these are above
 /// their expectation. Where sigmas are too small, throughout or in turns, an outlier is what stands
 /// out of the others. What becomes of a fix that does not agree, FixDoubt finds out from those that
 /// follow it.
 class FixJudge {
  public:
-  explicit FixJudge(const GnssOptions& options) : options_(options) {}
+  /// `dimension`: of what is judged, 1 to 3.
+  explicit FixJudge(const GnssOptions& options, int dimension = 3)
+      : options_(options), dimension_(dimension) {}
 
   /// The state has started anew.
   void start(int64_t t_ns);
@@ -42,10 +46,11 @@ class FixJudge {
 
  private:
   GnssOptions options_;
+  int dimension_;
   int64_t gate_open_until_ns_ = INT64_MIN;
   int64_t state_doubted_until_ns_ = INT64_MIN;
   std::deque<double> squares_;  ///< normalized innovations squared, the last ones
-  double believed_level_ = 1;   ///< mean normalized innovation squared of believed fixes, over 3
+  double believed_level_ = 1;   ///< mean normalized innovation squared of believed ones, over its expectation
 };
 
 }  // namespace foucault

@@ -102,8 +102,7 @@ std::optional<HoleTurn> turn_over(const ImuHole& hole, const std::deque<Measurem
   if (speed < kSlowest) return std::nullopt;
   const std::optional<CourseAfter> end = course_after(hole, after);
   if (!end || end->sigma > kCoarsest) return std::nullopt;
-  const Eigen::Matrix3d P =
-      hole.before.covariance.block<3, 3>(error_state::kVelocity, error_state::kVelocity);
+  const Eigen::Matrix3d P = hole.before.covariance_of(block::velocity);
   HoleTurn turn;
   turn.angle = so3::wrap(end->course - azimuth(velocity) - end->turned);
   turn.sigma = std::hypot(std::hypot(end->sigma, course_sigma(P, velocity)), kSideslipSigma);

@@ -8,12 +8,13 @@
 #include "foucault/core/so3.h"
 #include "foucault/geodesy/local_frame.h"
 #include "foucault/geodesy/wgs84.h"
+#include "foucault/state/kalman.h"
 
 namespace foucault {
 
 namespace {
 
-using namespace error_state;
+using namespace block;
 using Eigen::Matrix3d;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
@@ -30,32 +31,25 @@ double prior_sigma(double turn_on_sigma, double bias_sigma) {
   return std::hypot(turn_on_sigma, bias_sigma);
 }
 
-using Row15d = Eigen::Matrix<double, 1, kSize>;
+using Row = Eigen::Matrix<double, 1, kNodeSize>;
 
-/// Kalman update with a scalar measurement, H dx = innovation. Joseph form.
-void update(Epoch& epoch, const Row15d& H, double innovation, double variance) {
-  const Vector15d PHt = epoch.covariance * H.transpose();
-  const Vector15d K = PHt / (H.dot(PHt) + variance);
-  const Vector15d dx = K * innovation;
-  epoch.position = LocalFrame(epoch.position).to_geodetic(dx.segment<3>(kPosition));
-  epoch.velocity_n += dx.segment<3>(kVelocity);
-  epoch.q_n_b = (epoch.q_n_b * so3::exp(dx.segment<3>(kAttitude))).normalized();
-  epoch.bias.gyro += dx.segment<3>(kGyroBias);
-  epoch.bias.accel += dx.segment<3>(kAccelBias);
-  const Matrix15d I_KH = Matrix15d::Identity() - K * H;
-  const Matrix15d P = I_KH * epoch.covariance * I_KH.transpose() + K * variance * K.transpose();
-  epoch.covariance = 0.5 * (P + P.transpose());
+void update(Epoch& epoch, const Row& H, double innovation, double variance) {
+  Linearized z(1, kNodeSize);
+  z.r[0] = innovation;
+  z.H = H;
+  z.R(0, 0) = variance;
+  kalman_update(z, epoch, epoch.covariance);
 }
 
 /// A measured gyroscope bias together with what was known before; unless the two contradict each
 /// other, when the measurement is believed.
 void fuse_gyro_prior(Epoch& epoch, double sigma) {
   const Matrix3d prior = sigma * sigma * Matrix3d::Identity();
-  const Matrix3d sum = epoch.covariance.block<3, 3>(kGyroBias, kGyroBias) + prior;
+  const Matrix3d sum = epoch.covariance_of(gyro_bias) + prior;
   if (epoch.bias.gyro.dot(sum.ldlt().solve(epoch.bias.gyro)) > kContradiction) return;
   for (int axis = 0; axis < 3; ++axis) {
-    Row15d H = Row15d::Zero();
-    H[kGyroBias + axis] = 1;
+    Row H = Row::Zero();
+    part(H, gyro_bias)[axis] = 1;
     update(epoch, H, -epoch.bias.gyro[axis], sigma * sigma);
   }
 }
@@ -66,8 +60,8 @@ void fuse_force_length(Epoch& epoch, const AlignmentFindings& findings) {
   const Vector3d expected_n = specific_force_n(findings);
   const Vector3d along_n = expected_n.normalized();
   const double excess = findings.specific_force_b.norm() - expected_n.norm();
-  Row15d H = Row15d::Zero();
-  H.segment<3>(kAccelBias) = along_b;
+  Row H = Row::Zero();
+  part(H, accel_bias) = along_b;
   const double variance = along_b.dot(findings.specific_force_covariance * along_b) +
                           along_n.dot(findings.motion_covariance.block<3, 3>(3, 3) * along_n) +
                           kGravitySigma * kGravitySigma;
@@ -84,7 +78,7 @@ double accel_prior_sigma(const AlignmentFindings& findings, const ImuNoise& nois
 }
 
 /// Independent errors in, state errors out: P = J S J^T, block by block.
-Matrix15d covariance_of(const AlignmentFindings& findings, const Quaterniond& q_n_b,
+NodeMatrix covariance_of(const AlignmentFindings& findings, const Quaterniond& q_n_b,
                         double accel_bias_sigma) {
   constexpr int kFix = 0, kMotion = 3, kForce = 9, kBias = 12, kHeading = 15, kGyro = 16;
   constexpr int kSources = 19;
@@ -105,30 +99,31 @@ Matrix15d covariance_of(const AlignmentFindings& findings, const Quaterniond& q_
   const Matrix3d level = so3::skew(f) / f.squaredNorm();
   const Matrix3d keep_heading = Matrix3d::Identity() - about * down.transpose();
 
-  Jacobian attitude = Jacobian::Zero();
-  attitude.block<3, 3>(0, kBias) = keep_heading * level;
-  attitude.block<3, 3>(0, kForce) = keep_heading * level;
-  attitude.block<3, 3>(0, kMotion + 3) = keep_heading * level * R.transpose();
-  attitude.block<3, 3>(0, kMotion) = about * findings.heading_by_velocity.transpose();
-  attitude.col(kHeading) = about;
+  Jacobian by_attitude = Jacobian::Zero();
+  by_attitude.block<3, 3>(0, kBias) = keep_heading * level;
+  by_attitude.block<3, 3>(0, kForce) = keep_heading * level;
+  by_attitude.block<3, 3>(0, kMotion + 3) = keep_heading * level * R.transpose();
+  by_attitude.block<3, 3>(0, kMotion) = about * findings.heading_by_velocity.transpose();
+  by_attitude.col(kHeading) = about;
 
   const Vector3d rate_b =
       R.transpose() * (wgs84::earth_rate_n(findings.fix.antenna.latitude) + findings.turn_n);
-  Jacobian gyro_bias = -so3::skew(rate_b) * attitude;
-  gyro_bias.block<3, 3>(0, kGyro).setIdentity();
+  Jacobian by_gyro_bias = -so3::skew(rate_b) * by_attitude;
+  by_gyro_bias.block<3, 3>(0, kGyro).setIdentity();
 
   const Vector3d& lever = findings.fix.p_b_a;
-  Jacobian position = R * so3::skew(lever) * attitude;
-  position.block<3, 3>(0, kFix) += Matrix3d::Identity();
-  Jacobian velocity = R * so3::skew(findings.omega_b.cross(lever)) * attitude;
-  velocity.block<3, 3>(0, kMotion) += Matrix3d::Identity();
+  Jacobian by_position = R * so3::skew(lever) * by_attitude;
+  by_position.block<3, 3>(0, kFix) += Matrix3d::Identity();
+  Jacobian by_velocity = R * so3::skew(findings.omega_b.cross(lever)) * by_attitude;
+  by_velocity.block<3, 3>(0, kMotion) += Matrix3d::Identity();
 
-  Eigen::Matrix<double, kSize, kSources> J = Eigen::Matrix<double, kSize, kSources>::Zero();
-  J.middleRows<3>(kPosition) = position;
-  J.middleRows<3>(kVelocity) = velocity;
-  J.middleRows<3>(kAttitude) = attitude;
-  J.middleRows<3>(kGyroBias) = gyro_bias;
-  J.block<3, 3>(kAccelBias, kBias).setIdentity();
+  Eigen::Matrix<double, kNodeSize, kSources> J =
+      Eigen::Matrix<double, kNodeSize, kSources>::Zero();
+  rows_of(J, position) = by_position;
+  rows_of(J, velocity) = by_velocity;
+  rows_of(J, attitude) = by_attitude;
+  rows_of(J, gyro_bias) = by_gyro_bias;
+  rows_of(J, accel_bias).middleCols<3>(kBias).setIdentity();
   return J * S * J.transpose();
 }
 
@@ -193,10 +188,10 @@ Epoch with_given_angles(const Epoch& epoch, const Quaterniond& q_v_b, const Give
 
   Epoch result = epoch;
   result.q_n_b = so3::from_euler(euler) * q_v_b;
-  Matrix15d T = Matrix15d::Identity();
-  T.block<3, 3>(kAttitude, kAttitude) = b_by_euler * keep.asDiagonal() * euler_by_b;
-  result.covariance = T * epoch.covariance * T.transpose();
-  result.covariance.block<3, 3>(kAttitude, kAttitude) +=
+  NodeMatrix T = NodeMatrix::Identity();
+  part(T, attitude, attitude) = b_by_euler * keep.asDiagonal() * euler_by_b;
+  result.covariance = T * node_part(epoch.covariance) * T.transpose();
+  part(result.covariance, attitude, attitude) +=
       b_by_euler * variance.asDiagonal() * b_by_euler.transpose();
   return result;
 }
@@ -214,16 +209,16 @@ Epoch given_state(const GnssFix& fix, const Vector3d& antenna_velocity_n,
   const Matrix3d b_by_euler = (so3::euler_jacobian(euler) * q_v_b.toRotationMatrix()).inverse();
   const double gyro_sigma = prior_sigma(noise.gyro_turn_on_sigma, noise.gyro_bias_sigma);
   const double accel_sigma = prior_sigma(noise.accel_turn_on_sigma, noise.accel_bias_sigma);
-  Matrix15d J = Matrix15d::Identity();
+  NodeMatrix J = NodeMatrix::Identity();
   const Matrix3d R = epoch.q_n_b.toRotationMatrix();
-  J.block<3, 3>(kPosition, kAttitude) = R * so3::skew(fix.p_b_a);
-  J.block<3, 3>(kVelocity, kAttitude) = R * so3::skew(omega_b.cross(fix.p_b_a));
-  Matrix15d S = Matrix15d::Zero();
-  S.block<3, 3>(kPosition, kPosition) = fix.position_covariance;
-  S.block<3, 3>(kVelocity, kVelocity) = velocity_covariance;
-  S.block<3, 3>(kAttitude, kAttitude) = b_by_euler * variance.asDiagonal() * b_by_euler.transpose();
-  S.block<3, 3>(kGyroBias, kGyroBias) = gyro_sigma * gyro_sigma * Matrix3d::Identity();
-  S.block<3, 3>(kAccelBias, kAccelBias) = accel_sigma * accel_sigma * Matrix3d::Identity();
+  part(J, position, attitude) = R * so3::skew(fix.p_b_a);
+  part(J, velocity, attitude) = R * so3::skew(omega_b.cross(fix.p_b_a));
+  NodeMatrix S = NodeMatrix::Zero();
+  part(S, position, position) = fix.position_covariance;
+  part(S, velocity, velocity) = velocity_covariance;
+  part(S, attitude, attitude) = b_by_euler * variance.asDiagonal() * b_by_euler.transpose();
+  part(S, gyro_bias, gyro_bias) = gyro_sigma * gyro_sigma * Matrix3d::Identity();
+  part(S, accel_bias, accel_bias) = accel_sigma * accel_sigma * Matrix3d::Identity();
   epoch.covariance = J * S * J.transpose();
   return epoch;
 }

@@ -18,6 +18,8 @@
 #include "foucault/geodesy/local_frame.h"
 #include "foucault/inertial/increments.h"
 #include "foucault/inertial/time_mismatch.h"
+#include "foucault/measurement/gnss_position.h"
+#include "foucault/measurement/gnss_velocity.h"
 #include "imu_guard.h"
 #include "imu_hole.h"
 #include "known_biases.h"
@@ -97,6 +99,21 @@ void GapOptions::fields(ConfigFields& f) {
            "specific force in a hole against the one before it, 1 sigma");
 }
 
+void AidOptions::fields(ConfigFields& f) {
+  f.text("mode", mode, {"auto", "none"},
+         "auto: what is on below; none: positions alone, also in the alignment");
+  f.text("gnss_velocity", gnss_velocity, {"on", "off"}, "velocities that the receiver gives");
+  f.optional_number("gnss_velocity_sigma_m_s", gnss_velocity_sigma_m_s, kPositive,
+                    "sigma of these velocities, each axis, in the place of the receiver's");
+}
+
+void AidOptions::apply_to(GnssFix& fix) const {
+  if (mode == "none") fix.velocity_n.reset();
+  if (gnss_velocity_sigma_m_s)
+    fix.velocity_covariance =
+        std::pow(*gnss_velocity_sigma_m_s, 2) * Eigen::Matrix3d::Identity();
+}
+
 NavigationRun::~NavigationRun() = default;
 
 NavigationRun::NavigationRun(std::unique_ptr<Navigator> navigator, Aligner aligner,
@@ -109,7 +126,9 @@ NavigationRun::NavigationRun(std::unique_ptr<Navigator> navigator, Aligner align
       fix_guard_(std::make_unique<FixGuard>()),
       plausibility_(std::make_unique<Plausibility>()),
       screen_(std::make_unique<FixScreen>()),
-      judge_(std::make_unique<FixJudge>(options.gnss)) {
+      judge_(std::make_unique<FixJudge>(options.gnss)),
+      velocity_judge_(std::make_unique<FixJudge>(options.gnss)),
+      recent_{kRecentRatesMemory} {
   if (sink.wants_predictions()) probe_ = std::make_unique<PredictionProbe>();
 }
 
@@ -143,7 +162,7 @@ void NavigationRun::process_increment(const ImuIncrement& increment) {
   if (verdict.accel_repeats) {
     constexpr double kRepeatLasts = 3;  // [s] that the error stays the same
     usable.extra_accel_noise_density = options_.gaps.accel_sigma_m_s2 * std::sqrt(kRepeatLasts);
-    judge_->doubt_state(usable.t_end_ns);
+    doubt_state(usable.t_end_ns);
   }
   plausibility_->add(usable);
   pass_on(usable);
@@ -151,6 +170,7 @@ void NavigationRun::process_increment(const ImuIncrement& increment) {
 
 void NavigationRun::process_fix(const GnssFix& fix) {
   GnssFix usable = fix;
+  options_.aids.apply_to(usable);
   const FixClass fix_class = classify(usable);
   counts_.add(fix_class, fix.t_ns);
   switch (fix_class) {
@@ -278,6 +298,7 @@ void NavigationRun::start(const Epoch& aligned) {
   time_ns_ = initial.t_ns;
   last_node_ns_ = initial.t_ns;
   judge_->start(initial.t_ns);
+  velocity_judge_->start(initial.t_ns);
   last_used_ns_ = initial.t_ns;
   if (probe_) probe_->restart();
   navigator_->start(initial);
@@ -298,7 +319,7 @@ void NavigationRun::realign(const ImuIncrement& next) {
   before_hole_ = navigator_->epoch();
   std::multimap<int64_t, Event> pending;
   pending.swap(pending_);
-  recent_ = RecentRates();
+  recent_ = RecentRates{kRecentRatesMemory};
   last_fix_ns_.reset();
   fix_interval_ns_ = 0;
   aligner_.restart();
@@ -362,14 +383,14 @@ void NavigationRun::meet_hole(const ImuIncrement& next) {
     realign(next);
     return;
   }
-  if (recent_.memory == 0) recent_.add(next);
+  if (recent_.seen_s == 0) recent_.add(next);
   hole_ = std::make_unique<ImuHole>();
   hole_->before.t_ns = time_ns_;
   hole_->gyro_before_b = recent_.gyro_b;
   hole_->accel_before_b = recent_.accel_b;
   hole_->interval = usual_interval_.length;
   hole_->after = next;
-  recent_ = RecentRates();
+  recent_ = RecentRates{kRecentRatesMemory};
   beyond_hole_.push_back(next);
   if (gap < kHoleThatMayHideATurn) {
     leave_hole();
@@ -400,7 +421,7 @@ void NavigationRun::leave_hole() {
   std::deque<Measurement> beyond;
   beyond.swap(beyond_hole_);
   const bool noticeable = hole->length() >= kNoticeableGap;
-  if (noticeable) judge_->doubt_state(hole->after.t_begin_ns);
+  if (noticeable) doubt_state(hole->after.t_begin_ns);
   // Fixes in the hole came before its end was known; those after it wait their turn.
   const int64_t step_ns = hole->step_ns();
   std::vector<ImuIncrement> made_up;
@@ -410,7 +431,7 @@ void NavigationRun::leave_hole() {
     begin_ns = end_ns;
   }
   for (const ImuIncrement& increment : made_up) take(increment);
-  recent_ = RecentRates();
+  recent_ = RecentRates{kRecentRatesMemory};
   if (noticeable) {
     sink_.notice({time_ns_, NoticeKind::imu_gap,
                   fmt::format("no IMU data for {:.3f} s up to {}; bridged{}", hole->length(),
@@ -418,14 +439,6 @@ void NavigationRun::leave_hole() {
                               hole->turn ? ", with the turn that GNSS shows" : "")});
   }
   for (const Measurement& measurement : beyond) take(measurement);
-}
-
-void NavigationRun::RecentRates::add(const ImuIncrement& increment) {
-  const double dt = increment.dt();
-  memory = std::min(memory + dt, kRecentRatesMemory);
-  const double weight = std::min(1.0, dt / memory);
-  gyro_b += weight * (increment.dtheta_b / dt - gyro_b);
-  accel_b += weight * (increment.dvel_b / dt - accel_b);
 }
 
 void NavigationRun::UsualInterval::add(double dt) {
@@ -524,12 +537,13 @@ void NavigationRun::handle_fix(const GnssFix& fix) {
   result.t_ns = fix.t_ns;
   result.quality = fix.quality;
   result.antenna = fix.antenna;
+  result.p_b_a = fix.p_b_a;
   const GnssFix trusted = weighted(fix, options_.gnss);
   if (!is_position(fix.antenna) || !covariance_is_valid(trusted.position_covariance)) {
     result.verdict = FixVerdict::bad_sigma;
   } else {
-    const Innovation innovation = navigator_->innovation(trusted);
-    result.innovation_n = result.postfit_n = innovation.value_n;
+    const Innovation innovation = navigator_->innovation(GnssPosition(trusted));
+    result.innovation_n = result.postfit_n = innovation.value;
     result.innovation_covariance = innovation.covariance;
     if (!is_usable(fix)) {
       result.verdict = FixVerdict::low_quality;
@@ -587,6 +601,11 @@ std::optional<FixDecision> NavigationRun::decided_before(const GnssFix& fix) {
   return decision;
 }
 
+void NavigationRun::doubt_state(int64_t t_ns) {
+  judge_->doubt_state(t_ns);
+  velocity_judge_->doubt_state(t_ns);
+}
+
 /// Holds back what follows a fix in doubt until it is known what it was.
 void NavigationRun::look_beyond_doubt(const Measurement& measurement) {
   beyond_doubt_.push_back(measurement);
@@ -606,7 +625,7 @@ void NavigationRun::resolve_doubt() {
   for (const FixDecision& decision : outcome.fixes) decided_.emplace(decision.fix.t_ns, decision);
   for (const double square : outcome.level) judge_->remember(square);
   if (outcome.loosened) navigator_->loosen(*outcome.loosened);
-  if (outcome.state_was_wrong) judge_->doubt_state(outcome.fixes.back().fix.t_ns);
+  if (outcome.state_was_wrong) doubt_state(outcome.fixes.back().fix.t_ns);
   handle_fix(*doubted_fix_);
   handle_stop();
   for (const Measurement& measurement : beyond) take(measurement);
@@ -618,7 +637,7 @@ FixVerdict NavigationRun::carry_out(const FixDecision& decision, const GnssFix& 
     case FixDecision::Action::leave_out:
       return FixVerdict::gated;
     case FixDecision::Action::use_corrected:
-      navigator_->update(decision.corrected);
+      navigator_->update(gnss_position(decision.corrected));
       remember_fix_time();
       return FixVerdict::corrected;
     case FixDecision::Action::use:
@@ -630,10 +649,21 @@ FixVerdict NavigationRun::carry_out(const FixDecision& decision, const GnssFix& 
 }
 
 void NavigationRun::use(const GnssFix& fix, FixResult& result) {
-  navigator_->update(fix);
+  navigator_->update(gnss_position(fix));
   remember_fix_time();
+  if (fix.velocity_n && options_.aids.uses_gnss_velocity()) use_velocity(fix);
   const Epoch epoch = navigator_->epoch();
   result.postfit_n = difference_n(fix.antenna, antenna_of(epoch, fix.p_b_a));
+}
+
+void NavigationRun::use_velocity(const GnssFix& fix) {
+  if (!covariance_is_valid(fix.velocity_covariance)) return;
+  const ObservationPtr velocity = gnss_velocity(fix);
+  const Innovation innovation = navigator_->innovation(*velocity);
+  const bool believed = velocity_judge_->believes(fix.t_ns, innovation);
+  if (believed) navigator_->update(velocity);
+  sink_.observation({fix.t_ns, velocity->name(), static_cast<int>(innovation.value.size()),
+                     mahalanobis_squared(innovation), believed});
 }
 
 void NavigationRun::predict_ahead(const GnssFix& fix) {

@@ -3,6 +3,7 @@
 #include <array>
 
 #include "foucault/core/time.h"
+#include "foucault/measurement/gnss_position.h"
 
 namespace foucault {
 namespace {
@@ -40,9 +41,9 @@ std::optional<PredictionResult> PredictionProbe::compare(const GnssFix& fix) {
   while (horizon_ < kHorizonsS.size() && after_s > kLatest * kHorizonsS[horizon_]) ++horizon_;
   std::optional<PredictionResult> result;
   if (horizon_ < kHorizonsS.size() && after_s >= kHorizonsS[horizon_] - kJitter) {
-    const Innovation innovation = ahead_->innovation(fix);
+    const Innovation innovation = ahead_->innovation(GnssPosition(fix));
     result =
-        PredictionResult{fix.t_ns, kHorizonsS[horizon_], innovation.value_n, innovation.covariance};
+        PredictionResult{fix.t_ns, kHorizonsS[horizon_], innovation.value, innovation.covariance};
     ++horizon_;
   }
   if (horizon_ == kHorizonsS.size()) ahead_.reset();

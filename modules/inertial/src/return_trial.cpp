@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "foucault/core/time.h"
+#include "foucault/measurement/gnss_position.h"
 
 namespace foucault {
 namespace {
@@ -33,16 +34,16 @@ double log_density_of_error(const Vector3d& value, const Matrix3d& covariance) {
 }  // namespace
 
 FixLikelihood likelihood_of(const Innovation& innovation) {
-  const double true_fix = log_density(innovation.value_n, innovation.covariance);
+  const double true_fix = log_density(innovation.value, innovation.covariance);
   const double outlier =
-      kLogOutlier + log_density_of_error(innovation.value_n, innovation.covariance);
+      kLogOutlier + log_density_of_error(innovation.value, innovation.covariance);
   return {true_fix >= outlier, std::max(true_fix, outlier)};
 }
 
 ReturnTrial::ReturnTrial(const Navigator& navigator, const GnssFix& first, double level)
     : level_(level), begin_ns_(first.t_ns), last_ns_(first.t_ns) {
   for (double scale = 1; scale <= kLargestScale; scale *= 2) add_scale(navigator, scale);
-  add_offset(navigator, navigator.innovation(first).value_n.squaredNorm() / 3);
+  add_offset(navigator, navigator.innovation(GnssPosition(first)).value.squaredNorm() / 3);
 }
 
 void ReturnTrial::add_scale(const Navigator& navigator, double scale) {
@@ -53,8 +54,8 @@ void ReturnTrial::add_scale(const Navigator& navigator, double scale) {
 }
 
 void ReturnTrial::add_offset(const Navigator& navigator, double variance) {
-  Matrix15d added = Matrix15d::Zero();
-  added.diagonal().segment<3>(error_state::kPosition).setConstant(variance);
+  NodeMatrix added = NodeMatrix::Zero();
+  part(added.diagonal(), block::position).setConstant(variance);
   Hypothesis& h = hypotheses_.emplace_back();
   h.navigator = navigator.ahead(1);
   h.navigator->loosen(added);
@@ -74,10 +75,10 @@ void ReturnTrial::add(const GnssFix& fix) {
 }
 
 void ReturnTrial::try_fix(Hypothesis& h, const GnssFix& fix) {
-  const FixLikelihood likelihood = likelihood_of(h.navigator->innovation(fix));
+  const FixLikelihood likelihood = likelihood_of(h.navigator->innovation(GnssPosition(fix)));
   h.used.push_back(likelihood.is_true);
   h.log_probability += likelihood.log_density;
-  if (likelihood.is_true) h.navigator->update(fix);
+  if (likelihood.is_true) h.navigator->update(gnss_position(fix));
 }
 
 bool ReturnTrial::is_over() const {

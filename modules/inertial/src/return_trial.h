@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "foucault/core/measurement.h"
-#include "foucault/state/blocks.h"
 #include "foucault/inertial/navigator.h"
 
 namespace foucault {

@@ -5,14 +5,11 @@
 #include "foucault/core/error.h"
 #include "foucault/core/profile.h"
 #include "foucault/core/time.h"
+#include "foucault/geodesy/place.h"
 #include "sound_epoch.h"
 
 namespace foucault {
 namespace {
-
-using error_state::kAttitude;
-using error_state::kPosition;
-using error_state::kVelocity;
 
 template <class... F>
 struct Overloaded : F... {
@@ -29,61 +26,53 @@ Eigen::Vector3d hermite(double s, const Eigen::Vector3d& a, const Eigen::Vector3
 }
 
 /// The error of the forward run between nodes. It is the error in n that changes smoothly.
-Vector9d error_between(double s, double length, const SmoothedEpoch& begin,
-                       const SmoothedEpoch& end, const Eigen::Quaterniond& q_n_b) {
-  const Vector9d a = begin.after.head<9>();
-  const Vector9d b = end.before.head<9>();
-  const Eigen::Vector3d attitude_n = (1 - s) * (begin.epoch.q_n_b * a.segment<3>(kAttitude)) +
-                                     s * (end.epoch.q_n_b * b.segment<3>(kAttitude));
-  Vector9d error = (1 - s) * a + s * b;
-  error.segment<3>(kPosition) =
-      hermite(s, a.segment<3>(kPosition), length * a.segment<3>(kVelocity), b.segment<3>(kPosition),
-              length * b.segment<3>(kVelocity));
-  error.segment<3>(kAttitude) = q_n_b.conjugate() * attitude_n;
+NodeVector error_between(double s, double length, const SmoothedEpoch& begin,
+                         const SmoothedEpoch& end, const Eigen::Quaterniond& q_n_b) {
+  using namespace block;
+  const NodeVector& a = begin.after;
+  const NodeVector& b = end.before;
+  const Eigen::Vector3d attitude_n = (1 - s) * (begin.state.q_n_b * part(a, attitude)) +
+                                     s * (end.state.q_n_b * part(b, attitude));
+  NodeVector error = (1 - s) * a + s * b;
+  part(error, position) = hermite(s, part(a, position), length * part(a, velocity),
+                                  part(b, position), length * part(b, velocity));
+  part(error, attitude) = q_n_b.conjugate() * attitude_n;
   return error;
 }
 
 void throw_if_unsound(const std::vector<SmoothedEpoch>& nodes) {
   for (const SmoothedEpoch& node : nodes) {
-    const std::optional<std::string> part = unsound_part(node.epoch);
+    const std::optional<std::string> part = unsound_part(node.epoch());
     if (!part) continue;
     throw DataError(fmt::format(
         "the smoothed solution's {} is not finite at {:.3f} s; see how far a forward method comes",
-        *part, to_seconds(node.epoch.t_ns)));
+        *part, to_seconds(node.state.t_ns)));
   }
 }
 
-FixResult with_postfit(const FixResult& forward, const SmoothedEpoch& node) {
-  const Epoch& epoch = node.epoch;
+FixResult with_postfit(const FixResult& forward, const NavState& x) {
   FixResult result = forward;
-  result.postfit_n = displacement_n(epoch.position, result.antenna, Place(epoch.position)) -
-                     epoch.q_n_b * node.p_b_a;
+  result.postfit_n =
+      displacement_n(x.position, result.antenna, Place(x.position)) - x.q_n_b * result.p_b_a;
   return result;
 }
 
 }  // namespace
 
-Epoch between(const SmoothedEpoch& begin, const SmoothedEpoch& end, const StrapdownState& forward) {
-  const double length = seconds_between(begin.epoch.t_ns, end.epoch.t_ns);
-  const double s = seconds_between(begin.epoch.t_ns, forward.t_ns) / length;
-  const StrapdownState state =
-      corrected(forward, error_between(s, length, begin, end, forward.q_n_b));
-  Epoch epoch;
-  epoch.t_ns = forward.t_ns;
-  epoch.position = state.position;
-  epoch.velocity_n = state.v_n;
-  epoch.q_n_b = state.q_n_b;
-  epoch.bias.gyro = (1 - s) * begin.epoch.bias.gyro + s * end.epoch.bias.gyro;
-  epoch.bias.accel = (1 - s) * begin.epoch.bias.accel + s * end.epoch.bias.accel;
-  epoch.covariance = (1 - s) * begin.epoch.covariance + s * end.epoch.covariance;
+Epoch between(const SmoothedEpoch& begin, const SmoothedEpoch& end, const NavState& forward) {
+  const double length = seconds_between(begin.state.t_ns, end.state.t_ns);
+  const double s = seconds_between(begin.state.t_ns, forward.t_ns) / length;
+  Epoch epoch{boxplus(forward, error_between(s, length, begin, end, forward.q_n_b)),
+              (1 - s) * begin.covariance.full() + s * end.covariance.full()};
+  epoch.bias.gyro = (1 - s) * begin.state.bias.gyro + s * end.state.bias.gyro;
+  epoch.bias.accel = (1 - s) * begin.state.bias.accel + s * end.state.bias.accel;
+  epoch.slow = (1 - s) * begin.state.slow + s * end.state.slow;
   return epoch;
 }
 
 void Smoother::Keeper::epoch(const Epoch& epoch) {
   if (rate_ == EpochRate::imu && !recording_.at_node()) {
-    kept_.emplace_back(
-        BetweenEpoch{recording_.size() - 1,
-                     StrapdownState{epoch.t_ns, epoch.position, epoch.velocity_n, epoch.q_n_b}});
+    kept_.emplace_back(BetweenEpoch{recording_.size() - 1, epoch});
   } else {
     kept_.emplace_back(NodeEpoch{recording_.mark()});
   }
@@ -105,12 +94,13 @@ void Smoother::Keeper::give_out() {
   const std::vector<SmoothedEpoch> nodes = recording_.smoothed();
   throw_if_unsound(nodes);
   const auto give = Overloaded{
-      [&](const NodeEpoch& e) { sink_.epoch(nodes[e.node].epoch); },
+      [&](const NodeEpoch& e) { sink_.epoch(nodes[e.node].epoch()); },
       [&](const BetweenEpoch& e) {
         sink_.epoch(between(nodes[e.node], nodes[e.node + 1], e.forward));
       },
-      [&](const NodeFix& f) { sink_.fix(with_postfit(f.result, nodes[f.node])); },
-      [&](const FixResult& f) { sink_.fix(f); }, [&](const Notice& n) { sink_.notice(n); }};
+      [&](const NodeFix& f) { sink_.fix(with_postfit(f.result, nodes[f.node].state)); },
+      [&](const FixResult& f) { sink_.fix(f); },
+      [&](const ObservationResult& o) { sink_.observation(o); }, [&](const Notice& n) { sink_.notice(n); }};
   for (const auto& kept : kept_) std::visit(give, kept);
 }
 

@@ -2,6 +2,7 @@
 
 
 #include "foucault/core/so3.h"
+#include "foucault/geodesy/place.h"
 #include "foucault/inertial/increments.h"
 
 namespace foucault {
@@ -26,24 +27,6 @@ SensedMotion sensed_motion(const ImuIncrement& previous, const ImuIncrement& inc
 
 }  // namespace
 
-StrapdownState corrected(const StrapdownState& state, const Vector9d& error) {
-  using namespace error_state;
-  StrapdownState out = state;
-  out.position = displaced(state.position, error.segment<3>(kPosition), Place(state.position));
-  out.v_n += error.segment<3>(kVelocity);
-  out.q_n_b = (state.q_n_b * so3::exp(error.segment<3>(kAttitude))).normalized();
-  return out;
-}
-
-Vector9d difference(const StrapdownState& from, const StrapdownState& to) {
-  using namespace error_state;
-  Vector9d error;
-  error.segment<3>(kPosition) = displacement_n(from.position, to.position, Place(from.position));
-  error.segment<3>(kVelocity) = to.v_n - from.v_n;
-  error.segment<3>(kAttitude) = so3::log(from.q_n_b.conjugate() * to.q_n_b);
-  return error;
-}
-
 ImuIncrement without_bias(const ImuIncrement& increment, const ImuBias& bias) {
   ImuIncrement compensated = increment;
   compensated.dtheta_b -= bias.gyro * increment.dt();
@@ -51,24 +34,31 @@ ImuIncrement without_bias(const ImuIncrement& increment, const ImuBias& bias) {
   return compensated;
 }
 
-StrapdownState advance(const StrapdownState& state, const ImuIncrement& previous,
-                       const ImuIncrement& increment) {
+ImuIncrement without_scale(const ImuIncrement& increment, const ImuScale& scale) {
+  ImuIncrement compensated = increment;
+  compensated.dtheta_b.array() /= 1 + scale.gyro.array();
+  compensated.dvel_b.array() /= 1 + scale.accel.array();
+  return compensated;
+}
+
+NavState advance(const NavState& state, const ImuIncrement& previous,
+                 const ImuIncrement& increment) {
   const double dt = increment.dt();
   const SensedMotion sensed = sensed_motion(previous, increment);
   const Eigen::Vector3d sensed_velocity_n = state.q_n_b * sensed.velocity_b;
 
   const Geodetic mid_position =
-      displaced(state.position, 0.5 * dt * state.v_n, Place(state.position));
+      displaced(state.position, 0.5 * dt * state.velocity_n, Place(state.position));
   const Place mid(mid_position);
   const Eigen::Vector3d mid_v_n =
-      state.v_n + 0.5 * (sensed_velocity_n + dt * mid.free_acceleration_n(state.v_n));
+      state.velocity_n + 0.5 * (sensed_velocity_n + dt * mid.free_acceleration_n(state.velocity_n));
   const Eigen::Vector3d frame_rotation_n = (mid.omega_ie_n + mid.omega_en_n(mid_v_n)) * dt;
 
-  StrapdownState next;
+  NavState next = state;
   next.t_ns = increment.t_end_ns;
-  next.v_n = state.v_n + sensed_velocity_n - 0.5 * frame_rotation_n.cross(sensed_velocity_n) +
+  next.velocity_n = state.velocity_n + sensed_velocity_n - 0.5 * frame_rotation_n.cross(sensed_velocity_n) +
              dt * mid.free_acceleration_n(mid_v_n);
-  next.position = displaced(state.position, 0.5 * dt * (state.v_n + next.v_n), mid);
+  next.position = displaced(state.position, 0.5 * dt * (state.velocity_n + next.velocity_n), mid);
   next.q_n_b =
       (so3::exp(-frame_rotation_n) * state.q_n_b * so3::exp(sensed.rotation_b)).normalized();
   return next;

@@ -49,8 +49,8 @@ Outcome align(const DriveSimulator& simulator, const Sensors& sensors, const Imu
 }
 
 /// Truth minus estimate in the order of error_state.
-Vector15d error_of(const Epoch& epoch, const Truth& truth, const ImuBias& bias) {
-  Vector15d error;
+NodeVector error_of(const Epoch& epoch, const Truth& truth, const ImuBias& bias) {
+  NodeVector error;
   error << LocalFrame(epoch.position).to_local(truth.position), truth.velocity_n - epoch.velocity_n,
       so3::log(epoch.q_n_b.conjugate() * truth.q_n_b), bias.gyro - epoch.bias.gyro,
       bias.accel - epoch.bias.accel;
@@ -75,7 +75,7 @@ TEST(AlignmentAtRest, WithPerfectSensorsLandsOnTheTruthAtTheFirstFix) {
   ASSERT_TRUE(outcome.initial) << outcome.why_not;
   const Epoch& epoch = *outcome.initial;
   EXPECT_EQ(epoch.t_ns, DriveSimulator::kStart);
-  const Vector15d error = error_of(epoch, simulator.truth(epoch.t_ns), {});
+  const NodeVector error = error_of(epoch, simulator.truth(epoch.t_ns), {});
   EXPECT_LT(error.segment<3>(kPosition).norm(), 1e-4);
   EXPECT_LT(error.segment<3>(kVelocity).norm(), 1e-12);
   // Carrying the attitude the Earth's horizontal rate counts as bias: 1e-5 rad in 20 s.
@@ -93,7 +93,7 @@ TEST(AlignmentAtRest, WorksForAnyMounting) {
     const DriveSimulator simulator(rest_and_drive(10, -2.0), sensors);
     const Outcome outcome = align(simulator, sensors, noise_of(sensors, 1e-4, 1e-2));
     ASSERT_TRUE(outcome.initial) << rpy.transpose() << outcome.why_not;
-    const Vector15d error = error_of(*outcome.initial, simulator.truth(outcome.initial->t_ns), {});
+    const NodeVector error = error_of(*outcome.initial, simulator.truth(outcome.initial->t_ns), {});
     EXPECT_LT(error.segment<3>(kAttitude).norm(), 1e-4) << rpy.transpose();
     EXPECT_LT(error.segment<3>(kPosition).norm(), 1e-3) << rpy.transpose();
   }
@@ -111,7 +111,7 @@ struct Consistency {
 double square(double x) { return x * x; }
 
 void add_run(Consistency& sum, const Epoch& epoch, const Truth& truth, const ImuBias& bias) {
-  const Vector15d error = error_of(epoch, truth, bias);
+  const NodeVector error = error_of(epoch, truth, bias);
   const Eigen::Matrix3d R = epoch.q_n_b.toRotationMatrix();
   const Vector3d attitude = R * error.segment<3>(kAttitude);
   const Eigen::Matrix3d attitude_P =
@@ -193,7 +193,7 @@ TEST(AlignmentAtRest, LevelErrorAndAccelerometerBiasAreTied) {
   const Outcome outcome = align(simulator, sensors, noise_of(sensors, 1e-4, 0.015));
   ASSERT_TRUE(outcome.initial) << outcome.why_not;
   // Levelled at rest, g x dtheta = b_a across g: the difference is known far better than either.
-  const Matrix15d& P = outcome.initial->covariance;
+  const NodeMatrix& P = outcome.initial->covariance;
   const double g = 9.81;
   const Vector3d up_b = outcome.initial->q_n_b.conjugate() * Vector3d(0, 0, -1);
   for (const Vector3d& axis : {Vector3d(1, 0, 0), Vector3d(0, 1, 0)}) {
@@ -226,7 +226,7 @@ TEST(AlignmentWhileMoving, WithPerfectSensorsLandsOnTheTruth) {
   const DriveSimulator simulator(drive_without_rest(2.0), sensors);
   const Outcome outcome = align(simulator, sensors, noise_of(sensors, 1e-4, 1e-2));
   ASSERT_TRUE(outcome.initial) << outcome.why_not;
-  const Vector15d error = error_of(*outcome.initial, simulator.truth(outcome.initial->t_ns), {});
+  const NodeVector error = error_of(*outcome.initial, simulator.truth(outcome.initial->t_ns), {});
   EXPECT_LT(error.segment<3>(kPosition).norm(), 1e-3);
   EXPECT_LT(error.segment<3>(kVelocity).norm(), 0.05);
   EXPECT_LT(error.segment<3>(kAttitude).norm(), 0.1 * kDeg);
@@ -362,7 +362,7 @@ TEST(Alignment, GivenAnglesStartAtTheFirstFix) {
   EXPECT_NEAR(euler.roll, 0.3 * kDeg, 1e-9);
   EXPECT_NEAR(euler.pitch, -0.2 * kDeg, 1e-9);
   EXPECT_NEAR(euler.heading, heading + 0.5 * kDeg, 1e-9);
-  const Vector15d error = error_of(epoch, simulator.truth(epoch.t_ns), sensors.bias);
+  const NodeVector error = error_of(epoch, simulator.truth(epoch.t_ns), sensors.bias);
   for (int i = 0; i < 15; ++i) {
     EXPECT_LT(std::abs(error[i]), 3.5 * std::sqrt(epoch.covariance(i, i)) + 1e-9) << i;
   }
@@ -391,7 +391,7 @@ TEST(Alignment, HeadingAloneCompletesARest) {
   options.heading_sigma_deg = 2;
   const Outcome outcome = align(simulator, sensors, noise_of(sensors, 1e-4, 0.015), options);
   ASSERT_TRUE(outcome.initial) << outcome.why_not;
-  const Vector15d error =
+  const NodeVector error =
       error_of(*outcome.initial, simulator.truth(outcome.initial->t_ns), sensors.bias);
   EXPECT_LT(error.segment<3>(kAttitude).norm(), 0.02 * kDeg);
   EXPECT_NEAR(heading_sigma(*outcome.initial), 2 * kDeg, 1e-3 * kDeg);

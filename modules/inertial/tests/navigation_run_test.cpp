@@ -32,7 +32,7 @@ struct Log {
   std::vector<std::string> calls;
   std::vector<ImuIncrement> propagated;
   std::vector<Epoch> starts;
-  std::vector<GnssFix> updates;
+  std::vector<std::pair<int64_t, Linearized>> updates;  ///< by stamp
   std::function<void(Epoch&)> spoil;  ///< the state from now on, if any
 
   void add(const char* what, double ms) {
@@ -55,19 +55,15 @@ class FakeNavigator : public Navigator {
     log_.propagated.push_back(increment);
     now_ns_ = increment.t_end_ns;
   }
-  Innovation innovation(const GnssFix& fix) const override {
-    EXPECT_EQ(fix.t_ns, now_ns_);
-    Innovation result;
-    result.value_n = LocalFrame(kPlace).to_local(fix.antenna);
-    result.covariance = fix.position_covariance;
-    return result;
+  Innovation innovation(const Observation& observation) const override {
+    const Linearized z = linearize(observation);
+    return {z.r, z.R};
   }
-  void update(const GnssFix& fix) override {
-    EXPECT_EQ(fix.t_ns, now_ns_);
-    log_.updates.push_back(fix);
+  void update(const ObservationPtr& observation) override {
+    log_.updates.emplace_back(now_ns_, linearize(*observation));
     log_.add("update", ms_of(now_ns_));
   }
-  void loosen(const Matrix15d&) override { log_.add("loosen", ms_of(now_ns_)); }
+  void loosen(const NodeMatrix&) override { log_.add("loosen", ms_of(now_ns_)); }
   std::unique_ptr<Navigator> ahead(double) const override {
     static Log unseen;
     auto copy = std::make_unique<FakeNavigator>(unseen, velocity_n_);
@@ -85,6 +81,10 @@ class FakeNavigator : public Navigator {
   }
 
  private:
+  Linearized linearize(const Observation& observation) const {
+    return observation.linearize(epoch(), Vector3d::Zero(), Layout{});
+  }
+
   Log& log_;
   Vector3d velocity_n_;
   int64_t now_ns_ = 0;
@@ -100,6 +100,8 @@ struct RecordingSink : Sink {
   void prediction(const PredictionResult& p) override { predictions.push_back(p); }
   void epoch(const Epoch& e) override { epochs_ms.push_back(ms_of(e.t_ns)); }
   void fix(const FixResult& f) override { fixes.push_back(f); }
+  void observation(const ObservationResult& o) override { observations.push_back(o); }
+  std::vector<ObservationResult> observations;
   void notice(const Notice& n) override { notices.push_back(n); }
 };
 
@@ -602,7 +604,7 @@ TEST_F(NavigationRunTest, APositionHeldUnderNewStampsCountsOnce) {
   run().finish();
   // The first ten tell; of the twenty after them one each.
   EXPECT_EQ(log_.updates.size(), 70u);
-  EXPECT_EQ(ms_of(log_.updates.back().t_ns), 65 + 50 * 145);
+  EXPECT_EQ(ms_of(log_.updates.back().first), 65 + 50 * 145);
   EXPECT_THAT(sink_.notices.back().text, HasSubstr("80 fixes repeat the position before them"));
 }
 
@@ -622,6 +624,7 @@ TEST_F(NavigationRunTest, FixesAtRestMayRepeatByChance) {
 }
 
 TEST_F(NavigationRunTest, AVelocityThatIsNoNumberLeavesThePosition) {
+  options_.aids.gnss_velocity = "on";
   align();
   GnssFix fix = fix_at(20);
   fix.velocity_n->x() = std::numeric_limits<double>::quiet_NaN();
@@ -630,8 +633,33 @@ TEST_F(NavigationRunTest, AVelocityThatIsNoNumberLeavesThePosition) {
   fix.velocity_covariance(1, 1) = std::numeric_limits<double>::quiet_NaN();
   run().process(fix);
   feed_imu(10, 50);
-  ASSERT_EQ(log_.updates.size(), 2u);
-  for (const GnssFix& used : log_.updates) EXPECT_FALSE(used.velocity_n.has_value());
+  EXPECT_EQ(log_.updates.size(), 2u);
+  EXPECT_TRUE(sink_.observations.empty());
+}
+
+TEST_F(NavigationRunTest, VelocitiesAreUsedIfAskedForAndGatedByThemselves) {
+  for (const char* mode : {"none", "auto"}) {
+    SetUp();
+    options_.aids.gnss_velocity = "on";
+    options_.aids.mode = mode;
+    align();
+    GnssFix outlier = fix_at(30);
+    outlier.velocity_n->y() = 5;
+    run().process(fix_at(20));
+    run().process(outlier);
+    feed_imu(10, 50);
+    if (options_.aids.mode == "none") {
+      EXPECT_EQ(log_.updates.size(), 2u);
+      EXPECT_TRUE(sink_.observations.empty());
+      continue;
+    }
+    EXPECT_EQ(log_.updates.size(), 3u);
+    ASSERT_EQ(sink_.observations.size(), 2u);
+    EXPECT_TRUE(sink_.observations[0].used);
+    EXPECT_EQ(sink_.observations[0].name, "gnss_velocity");
+    EXPECT_FALSE(sink_.observations[1].used);
+    EXPECT_NEAR(sink_.observations[1].normalized_square, 25 / 0.01, 1e-6);
+  }
 }
 
 TEST_F(NavigationRunTest, AFixWithoutSigmaTellsNoTurnOverAHole) {
@@ -663,7 +691,7 @@ TEST_F(NavigationRunTest, SigmasAreScaledAndFloored) {
   run().process(fix);
   feed_imu(10, 30);
   ASSERT_EQ(log_.updates.size(), 1u);
-  const Vector3d variance = log_.updates[0].position_covariance.diagonal();
+  const Vector3d variance = log_.updates[0].second.R.diagonal();
   EXPECT_NEAR(variance.x(), 0.09, 1e-12);
   EXPECT_NEAR(variance.y(), 0.09, 1e-12);
   EXPECT_NEAR(variance.z(), 4, 1e-12);

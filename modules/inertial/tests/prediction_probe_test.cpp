@@ -22,13 +22,11 @@ class Coasting : public Navigator {
  public:
   void start(const Epoch&) override {}
   void propagate(const ImuIncrement& increment) override { since_update_s_ += increment.dt(); }
-  Innovation innovation(const GnssFix&) const override {
-    Innovation result;
-    result.value_n.x() = since_update_s_;
-    return result;
+  Innovation innovation(const Observation&) const override {
+    return {Eigen::Vector3d(since_update_s_, 0, 0), Eigen::Matrix3d::Identity()};
   }
-  void update(const GnssFix&) override { since_update_s_ = 0; }
-  void loosen(const Matrix15d&) override {}
+  void update(const ObservationPtr&) override { since_update_s_ = 0; }
+  void loosen(const NodeMatrix&) override {}
   void hold() override {}
   Epoch epoch() const override { return {}; }
   std::unique_ptr<Navigator> ahead(double) const override {
@@ -58,7 +56,7 @@ Predictions drive(int until_s, const std::function<bool(int)>& fixed, Coasting& 
     if (!fixed(t)) continue;
     GnssFix fix;
     fix.t_ns = nanoseconds(t);
-    navigator.update(fix);
+    navigator.update(gnss_position(fix));
     const auto prediction = probe.meet(fix, navigator);
     if (prediction) predictions.emplace_back(prediction->ahead_s, prediction->innovation_n.x());
   }

@@ -6,6 +6,7 @@
 
 #include "foucault/core/so3.h"
 #include "foucault/core/time.h"
+#include "foucault/geodesy/place.h"
 #include "foucault/geodesy/wgs84.h"
 #include "foucault/simulation/imu_simulator.h"
 #include "foucault/simulation/scenario.h"
@@ -23,9 +24,14 @@ ScenarioOptions scenario(const std::string& name, double duration_s) {
   return options;
 }
 
-StrapdownState true_state(const Trajectory& trajectory, int64_t t_ns) {
+NavState true_state(const Trajectory& trajectory, int64_t t_ns) {
   const Motion motion = trajectory.at(to_seconds(t_ns));
-  return {t_ns, motion.position, motion.velocity_n, motion.q_n_v};
+  NavState state;
+  state.t_ns = t_ns;
+  state.position = motion.position;
+  state.velocity_n = motion.velocity_n;
+  state.q_n_b = motion.q_n_v;
+  return state;
 }
 
 /// The window of a free-inertial run and what is left out of the algorithm in it.
@@ -48,7 +54,7 @@ Closure free_inertial_closure(const Trajectory& trajectory, const Window& run) {
   const int64_t begin_ns = nanoseconds(run.begin_s);
   const int64_t step_ns = nanoseconds(1 / run.rate_hz);
   const int64_t steps = static_cast<int64_t>(std::lround(run.length_s * run.rate_hz));
-  StrapdownState state = true_state(trajectory, begin_ns);
+  NavState state = true_state(trajectory, begin_ns);
   ImuIncrement previous;
   for (int64_t k = 0; k < steps; ++k) {
     ImuIncrement increment = exact_increment(trajectory, Eigen::Quaterniond::Identity(), 0,
@@ -60,9 +66,9 @@ Closure free_inertial_closure(const Trajectory& trajectory, const Window& run) {
     state = advance(state, run.use_previous ? previous : ImuIncrement{}, increment);
     previous = increment;
   }
-  const StrapdownState truth = true_state(trajectory, begin_ns + steps * step_ns);
+  const NavState truth = true_state(trajectory, begin_ns + steps * step_ns);
   return {displacement_n(truth.position, state.position, Place(truth.position)).norm(),
-          (state.v_n - truth.v_n).norm(), so3::log(truth.q_n_b.conjugate() * state.q_n_b).norm()};
+          (state.velocity_n - truth.velocity_n).norm(), so3::log(truth.q_n_b.conjugate() * state.q_n_b).norm()};
 }
 
 /// The worst of several windows of a trip.
@@ -155,7 +161,7 @@ TEST(Strapdown, ClosesAcrossTheDateLineAndAtHighLatitude) {
 }
 
 TEST(Strapdown, RestStaysAtRestForAnHour) {
-  StrapdownState state;
+  NavState state;
   state.position = {45 * kDeg, 7 * kDeg, 300};
   state.q_n_b = so3::from_euler({0.02, -0.03, 1.0});
   const Place place(state.position);
@@ -170,7 +176,7 @@ TEST(Strapdown, RestStaysAtRestForAnHour) {
     state = advance(state, k == 0 ? ImuIncrement{} : increment, increment);
   }
   EXPECT_LT(displacement_n(start, state.position, place).norm(), 1e-3);
-  EXPECT_LT(state.v_n.norm(), 1e-6);
+  EXPECT_LT(state.velocity_n.norm(), 1e-6);
 }
 
 TEST(Strapdown, DisplacementInvertsDisplaced) {

@@ -119,13 +119,12 @@ class IntervalRecorder {
 
   void noise(const std::string& grade, const std::vector<ImuIncrement>& increments,
              double rate_hz) const {
-    using namespace error_state;
     Preintegrator integrator(imu_preset(grade), {}, increments[1].t_begin_ns, increments.front());
     integrate(integrator, increments, durations_s_, [&](std::size_t mark) {
-      const Matrix15d P = integrator.result().covariance;
-      const auto sigma = [&P](int row) { return std::sqrt(P.block<3, 3>(row, row).trace()); };
+      const NodeMatrix P = integrator.result().covariance;
+      const auto sigma = [&P](const NodeBlock& b) { return std::sqrt(part(P, b, b).trace()); };
       add(LabGroup::noise, grade, rate_hz, mark, distance_m_,
-          {sigma(kPosition), sigma(kVelocity), sigma(kAttitude)});
+          {sigma(block::position), sigma(block::velocity), sigma(block::attitude)});
     });
   }
 

@@ -1,6 +1,9 @@
 #include "foucault/preintegration/motion.h"
 
 #include <Eigen/LU>
+#include <cmath>
+#include <stdexcept>
+#include <string>
 
 #include "foucault/core/so3.h"
 
@@ -10,21 +13,29 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
-using namespace error_state;
+using namespace block;
 
-/// The preintegration at the biases of a node, (46).
+/// The preintegration at the biases of a node and at scale factors, (46).
 struct Corrected {
   Vector3d dp, dv;
   Quaterniond dq;
-  Vector3d dq_shift;  ///< J_dq_bg d_g
+  Vector3d dq_shift;
 };
 
-Corrected correct(const Preintegration& pre, const ImuBias& bias) {
+Corrected correct(const Preintegration& pre, const ImuBias& bias, const ImuScale& scale) {
   const Vector3d dg = bias.gyro - pre.bias.gyro;
   const Vector3d da = bias.accel - pre.bias.accel;
-  const Vector3d shift = pre.J_dq_bg * dg;
-  return {pre.dp + pre.J_dp_bg * dg + pre.J_dp_ba * da,
-          pre.dv + pre.J_dv_bg * dg + pre.J_dv_ba * da, pre.dq * so3::exp(shift), shift};
+  Vector3d dp = pre.dp + pre.by_gyro_bias.dp * dg + pre.by_accel_bias.dp * da;
+  Vector3d dv = pre.dv + pre.by_gyro_bias.dv * dg + pre.by_accel_bias.dv * da;
+  Vector3d shift = pre.by_gyro_bias.dq * dg;
+  if (pre.scale) {
+    const Vector3d sg = scale.gyro - pre.scale->gyro;
+    const Vector3d sa = scale.accel - pre.scale->accel;
+    dp += pre.by_gyro_scale.dp * sg + pre.by_accel_scale.dp * sa;
+    dv += pre.by_gyro_scale.dv * sg + pre.by_accel_scale.dv * sa;
+    shift += pre.by_gyro_scale.dq * sg;
+  }
+  return {dp, dv, pre.dq * so3::exp(shift), shift};
 }
 
 /// A bias of b0 at the beginning decays towards the one at which the interval was integrated.
@@ -76,15 +87,16 @@ struct Terms {
   Vector3d p_seen;     ///< R0^T (s(T) - way)
   Vector3d v_seen;     ///< R0^T (s'(T) - velocity)
   Quaterniond q_seen;  ///< q0^-1 Exp(w T) q1
-  Vector15d r;
+  NodeVector r;
 };
 
 Terms evaluate(const NodeState& x0, const NodeState& x1, const Preintegration& pre,
-               const EarthModel& earth) {
+               const EarthModel& earth, const ImuScale& scale) {
   const Vector3d& w = earth.omega_ie_w;
   const Quaterniond earth_turn = so3::exp(w * pre.dt);
   const Matrix3d R0 = x0.q_w_b.toRotationMatrix();
-  Terms t{correct(pre, x0.bias), R0.transpose(), {}, Fall(x0, earth, pre.dt), {}, {}, {}, {}};
+  Terms t{
+      correct(pre, x0.bias, scale), R0.transpose(), {}, Fall(x0, earth, pre.dt), {}, {}, {}, {}};
   t.turn = t.R0t * earth_turn.toRotationMatrix();
 
   const Vector3d moved = x1.p_w_b - x0.p_w_b;
@@ -92,12 +104,12 @@ Terms evaluate(const NodeState& x0, const NodeState& x1, const Preintegration& p
   t.v_seen = t.turn * (x1.v_w_b + w.cross(moved)) - t.R0t * t.fall.velocity;
   t.q_seen = x0.q_w_b.conjugate() * earth_turn * x1.q_w_b;
 
-  t.r.segment<3>(kPosition) = t.p_seen - t.R0t * (t.fall.gradient * (R0 * pre.iidp)) - t.z.dp;
-  t.r.segment<3>(kVelocity) = t.v_seen - t.R0t * (t.fall.gradient * (R0 * pre.idp)) - t.z.dv;
-  t.r.segment<3>(kAttitude) = so3::log(t.z.dq.conjugate() * t.q_seen);
+  part(t.r, position) = t.p_seen - t.R0t * (t.fall.gradient * (R0 * pre.iidp)) - t.z.dp;
+  part(t.r, velocity) = t.v_seen - t.R0t * (t.fall.gradient * (R0 * pre.idp)) - t.z.dv;
+  part(t.r, attitude) = so3::log(t.z.dq.conjugate() * t.q_seen);
   const ImuBias expected = expected_bias(x0.bias, pre);
-  t.r.segment<3>(kGyroBias) = x1.bias.gyro - expected.gyro;
-  t.r.segment<3>(kAccelBias) = x1.bias.accel - expected.accel;
+  part(t.r, gyro_bias) = x1.bias.gyro - expected.gyro;
+  part(t.r, accel_bias) = x1.bias.accel - expected.accel;
   return t;
 }
 
@@ -122,71 +134,141 @@ Matrix3d conjugation_jacobian(const Matrix3d& R0t_M_R0, const Vector3d& x) {
   return so3::skew(R0t_M_R0 * x) - R0t_M_R0 * so3::skew(x);
 }
 
-void set_block(Matrix15d& J, int row, int column, const Matrix3d& block) {
-  J.block<3, 3>(row, column) = block;
+/// Derivatives of r_q.
+struct AttitudeJacobians {
+  Matrix3d by_x1;     ///< by dtheta1
+  Matrix3d by_shift;  ///< by the correction of dq
+};
+
+AttitudeJacobians attitude_jacobians(const Terms& t) {
+  const Vector3d r_q = part(t.r, attitude);
+  const Matrix3d Jr_inverse = so3::right_jacobian_inverse(r_q);
+  return {Jr_inverse, -Jr_inverse * so3::exp(r_q).toRotationMatrix().transpose() *
+                          so3::right_jacobian(t.z.dq_shift)};
 }
 
-Matrix15d jacobian_x0(const Terms& t, const Preintegration& pre, const EarthModel& earth) {
+NodeMatrix jacobian_x0(const Terms& t, const AttitudeJacobians& r_q, const Preintegration& pre,
+                       const EarthModel& earth) {
   const double T = pre.dt;
   const Matrix3d turn_W = t.turn * so3::skew(earth.omega_ie_w);
   const Matrix3d R0t_G = t.R0t * t.fall.gradient;
   const Matrix3d gradient_b = R0t_G * t.R0t.transpose();
   const FallByPosition fall = fall_by_position(t.fall, earth, T);
-  const Vector3d r_q = t.r.segment<3>(kAttitude);
-  const Matrix3d Jr_inverse = so3::right_jacobian_inverse(r_q);
-  Matrix15d J = Matrix15d::Zero();
+  NodeMatrix J = NodeMatrix::Zero();
 
-  set_block(J, kPosition, kPosition, -t.turn - t.R0t * fall.way);
-  set_block(J, kPosition, kVelocity, -T * t.R0t - T * T * T / 6 * R0t_G);
-  set_block(J, kPosition, kAttitude,
-            so3::skew(t.p_seen) - conjugation_jacobian(gradient_b, pre.iidp));
-  set_block(J, kPosition, kGyroBias, -pre.J_dp_bg);
-  set_block(J, kPosition, kAccelBias, -pre.J_dp_ba);
+  part(J, position, position) = -t.turn - t.R0t * fall.way;
+  part(J, position, velocity) = -T * t.R0t - T * T * T / 6 * R0t_G;
+  part(J, position, attitude) = so3::skew(t.p_seen) - conjugation_jacobian(gradient_b, pre.iidp);
+  part(J, position, gyro_bias) = -pre.by_gyro_bias.dp;
+  part(J, position, accel_bias) = -pre.by_accel_bias.dp;
 
-  set_block(J, kVelocity, kPosition, -turn_W - t.R0t * fall.velocity);
-  set_block(J, kVelocity, kVelocity, -t.R0t - T * T / 2 * R0t_G);
-  set_block(J, kVelocity, kAttitude,
-            so3::skew(t.v_seen) - conjugation_jacobian(gradient_b, pre.idp));
-  set_block(J, kVelocity, kGyroBias, -pre.J_dv_bg);
-  set_block(J, kVelocity, kAccelBias, -pre.J_dv_ba);
+  part(J, velocity, position) = -turn_W - t.R0t * fall.velocity;
+  part(J, velocity, velocity) = -t.R0t - T * T / 2 * R0t_G;
+  part(J, velocity, attitude) = so3::skew(t.v_seen) - conjugation_jacobian(gradient_b, pre.idp);
+  part(J, velocity, gyro_bias) = -pre.by_gyro_bias.dv;
+  part(J, velocity, accel_bias) = -pre.by_accel_bias.dv;
 
-  set_block(J, kAttitude, kAttitude, -Jr_inverse * t.q_seen.toRotationMatrix().transpose());
-  set_block(J, kAttitude, kGyroBias,
-            -Jr_inverse * so3::exp(r_q).toRotationMatrix().transpose() *
-                so3::right_jacobian(t.z.dq_shift) * pre.J_dq_bg);
+  part(J, attitude, attitude) = -r_q.by_x1 * t.q_seen.toRotationMatrix().transpose();
+  part(J, attitude, gyro_bias) = r_q.by_shift * pre.by_gyro_bias.dq;
 
-  set_block(J, kGyroBias, kGyroBias, -pre.gyro_bias_decay * Matrix3d::Identity());
-  set_block(J, kAccelBias, kAccelBias, -pre.accel_bias_decay * Matrix3d::Identity());
+  part(J, gyro_bias, gyro_bias) = -pre.gyro_bias_decay * Matrix3d::Identity();
+  part(J, accel_bias, accel_bias) = -pre.accel_bias_decay * Matrix3d::Identity();
   return J;
 }
 
-Matrix15d jacobian_x1(const Terms& t, const EarthModel& earth) {
-  Matrix15d J = Matrix15d::Zero();
-  set_block(J, kPosition, kPosition, t.turn);
-  set_block(J, kVelocity, kPosition, t.turn * so3::skew(earth.omega_ie_w));
-  set_block(J, kVelocity, kVelocity, t.turn);
-  set_block(J, kAttitude, kAttitude, so3::right_jacobian_inverse(t.r.segment<3>(kAttitude)));
-  set_block(J, kGyroBias, kGyroBias, Matrix3d::Identity());
-  set_block(J, kAccelBias, kAccelBias, Matrix3d::Identity());
+NodeMatrix jacobian_x1(const Terms& t, const AttitudeJacobians& r_q, const EarthModel& earth) {
+  NodeMatrix J = NodeMatrix::Zero();
+  part(J, position, position) = t.turn;
+  part(J, velocity, position) = t.turn * so3::skew(earth.omega_ie_w);
+  part(J, velocity, velocity) = t.turn;
+  part(J, attitude, attitude) = r_q.by_x1;
+  part(J, gyro_bias, gyro_bias) = Matrix3d::Identity();
+  part(J, accel_bias, accel_bias) = Matrix3d::Identity();
   return J;
+}
+
+NodeByAxis jacobian_of(const DeltaJacobian& change, const AttitudeJacobians& r_q) {
+  NodeByAxis J = NodeByAxis::Zero();
+  rows_of(J, position) = -change.dp;
+  rows_of(J, velocity) = -change.dv;
+  rows_of(J, attitude) = r_q.by_shift * change.dq;
+  return J;
+}
+
+/// r(x0, x1, slow) = e to first order, solved for d1: -d1 = F d0 + S d_slow - B e.
+struct ErrorTransition {
+  NodeMatrix F;
+  NodeMatrix B;
+  NodeBySlow S;
+};
+
+ErrorTransition error_transition(const MotionResidual& m, const NodeBySlow& J_slow) {
+  const Eigen::PartialPivLU<NodeMatrix> J1(m.J_x1);  // block lower triangular, invertible blocks
+  ErrorTransition t{J1.solve(m.J_x0), J1.solve(NodeMatrix::Identity()), J_slow};
+  if (J_slow.cols() > 0) t.S = J1.solve(J_slow);
+  return t;
+}
+
+/// Without what the slow blocks add.
+NodeMatrix node_covariance(const ErrorTransition& t, const NodeMatrix& P, const NodeMatrix& noise) {
+  const NodeMatrix next = t.F * P * t.F.transpose() + t.B * noise * t.B.transpose();
+  return 0.5 * (next + next.transpose());
+}
+
+void check_scale(const Preintegration& pre, const Layout& layout) {
+  if (pre.scale || !(layout.slow_index(gyro_scale) || layout.slow_index(accel_scale))) return;
+  throw std::invalid_argument("preintegration from " + std::to_string(pre.t_begin_ns) +
+                              " ns has no scale factors, but they are estimated");
+}
+
+/// Share of each slow row's error that is left after T.
+SlowVector decay(const Layout& layout, double T) {
+  SlowVector left(layout.slow_size());
+  for (const SlowBlock& slow : layout.slow())
+    left.segment(slow.index, slow.block.size).setConstant(std::exp(-T / slow.tau));
+  return left;
+}
+
+/// Variance that the processes of the slow blocks gain over T.
+SlowVector driving_variance(const Layout& layout, double T) {
+  SlowVector variance(layout.slow_size());
+  for (const SlowBlock& slow : layout.slow())
+    variance.segment(slow.index, slow.block.size)
+        .setConstant(-std::expm1(-2 * T / slow.tau) * slow.sigma * slow.sigma);
+  return variance;
 }
 
 }  // namespace
 
 MotionResidual motion_residual(const NodeState& x0, const NodeState& x1, const Preintegration& pre,
-                               const EarthModel& earth) {
-  const Terms t = evaluate(x0, x1, pre, earth);
-  return {t.r, jacobian_x0(t, pre, earth), jacobian_x1(t, earth)};
+                               const EarthModel& earth, const ImuScale& scale) {
+  const Terms t = evaluate(x0, x1, pre, earth, scale);
+  const AttitudeJacobians r_q = attitude_jacobians(t);
+  MotionResidual m{t.r, jacobian_x0(t, r_q, pre, earth), jacobian_x1(t, r_q, earth)};
+  if (pre.scale) {
+    m.J_gyro_scale = jacobian_of(pre.by_gyro_scale, r_q);
+    m.J_accel_scale = jacobian_of(pre.by_accel_scale, r_q);
+  }
+  return m;
 }
 
-Vector15d motion_residual_value(const NodeState& x0, const NodeState& x1, const Preintegration& pre,
-                                const EarthModel& earth) {
-  return evaluate(x0, x1, pre, earth).r;
+NodeVector motion_residual_value(const NodeState& x0, const NodeState& x1,
+                                 const Preintegration& pre, const EarthModel& earth,
+                                 const ImuScale& scale) {
+  return evaluate(x0, x1, pre, earth, scale).r;
 }
 
-NodeState predict(const NodeState& x0, const Preintegration& pre, const EarthModel& earth) {
+NodeBySlow slow_jacobian(const MotionResidual& m, const Layout& layout) {
+  NodeBySlow J = NodeBySlow::Zero(kNodeSize, layout.slow_size());
+  if (const auto index = layout.slow_index(gyro_scale)) J.middleCols<3>(*index) = m.J_gyro_scale;
+  if (const auto index = layout.slow_index(accel_scale)) J.middleCols<3>(*index) = m.J_accel_scale;
+  return J;
+}
+
+NodeState predict(const NodeState& x0, const Preintegration& pre, const EarthModel& earth,
+                  const ImuScale& scale) {
   const Vector3d& w = earth.omega_ie_w;
-  const Corrected z = correct(pre, x0.bias);
+  const Corrected z = correct(pre, x0.bias, scale);
   const Matrix3d R0 = x0.q_w_b.toRotationMatrix();
   const Fall fall(x0, earth, pre.dt);
   const Vector3d way = fall.way + R0 * z.dp + fall.gradient * (R0 * pre.iidp);
@@ -202,14 +284,33 @@ NodeState predict(const NodeState& x0, const Preintegration& pre, const EarthMod
   return x1;
 }
 
-Matrix15d predict_covariance(const NodeState& x0, const NodeState& x1, const Preintegration& pre,
-                             const EarthModel& earth, const Matrix15d& covariance_x0) {
-  // r(x0, x1) = e: J1 d1 = e - J0 d0. J1 is block lower triangular with invertible blocks.
-  const MotionResidual m = motion_residual(x0, x1, pre, earth);
-  const Eigen::PartialPivLU<Matrix15d> J1(m.J_x1);
-  const Matrix15d F = J1.solve(m.J_x0);
-  const Matrix15d B = J1.solve(Matrix15d::Identity());
-  const Matrix15d P = F * covariance_x0 * F.transpose() + B * pre.covariance * B.transpose();
+NodeMatrix predict_covariance(const NodeState& x0, const NodeState& x1, const Preintegration& pre,
+                              const EarthModel& earth, const NodeMatrix& covariance_x0) {
+  const MotionResidual m = motion_residual(x0, x1, pre, earth, pre.scale.value_or(ImuScale{}));
+  return node_covariance(error_transition(m, NodeBySlow(kNodeSize, 0)), covariance_x0,
+                         pre.covariance);
+}
+
+StateMatrix predict_covariance(const NodeState& x0, const NodeState& x1, const Preintegration& pre,
+                               const EarthModel& earth, const StateMatrix& covariance_x0,
+                               const Layout& layout, const SlowVector& slow) {
+  check_scale(pre, layout);
+  const int n = layout.slow_size();
+  const MotionResidual m = motion_residual(x0, x1, pre, earth, layout.imu_scale(slow));
+  const ErrorTransition t = error_transition(m, slow_jacobian(m, layout));
+  StateMatrix P(layout.size(), layout.size());
+  node_part(P) = node_covariance(t, node_part(covariance_x0), pre.covariance);
+  if (n == 0) return P;
+
+  const NodeBySlow by_slow = covariance_x0.topRightCorner(kNodeSize, n);
+  const SlowMatrix slow_slow = covariance_x0.bottomRightCorner(n, n);
+  const NodeMatrix crossed = t.F * by_slow * t.S.transpose();
+  node_part(P) += crossed + crossed.transpose() + t.S * slow_slow * t.S.transpose();
+  const SlowVector left = decay(layout, pre.dt);
+  P.topRightCorner(kNodeSize, n) = -(t.F * by_slow + t.S * slow_slow) * left.asDiagonal();
+  P.bottomLeftCorner(n, kNodeSize) = P.topRightCorner(kNodeSize, n).transpose();
+  P.bottomRightCorner(n, n) = left.asDiagonal() * slow_slow * left.asDiagonal();
+  P.bottomRightCorner(n, n).diagonal() += driving_variance(layout, pre.dt);
   return 0.5 * (P + P.transpose());
 }
 

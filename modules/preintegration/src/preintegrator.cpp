@@ -44,6 +44,26 @@ Eigen::Quaterniond nearly_normalized(const Eigen::Quaterniond& q) {
   return Eigen::Quaterniond(q.coeffs() * (1.5 - 0.5 * q.squaredNorm()));
 }
 
+/// A step for a block whose error d turns the sample by -D d, and has turned b by -middle d at its
+/// middle: rows of Phi applied to J, see propagate_covariance.
+inline void step_of_gyro(const Matrix3d& middle, const Matrix3d& D, const Vector3d& y, double dt,
+                         DeltaJacobian& J) {
+  const Matrix3d w = cross(y, middle);
+  J.dp += dt * (J.dv + 0.5 * w);
+  J.dv += w;
+  J.dq -= D;
+}
+
+/// The same where it changes the velocity by -D d.
+inline void step_of_accel(const Matrix3d& D, double dt, DeltaJacobian& J) {
+  J.dp += dt * (J.dv - 0.5 * D);
+  J.dv -= D;
+}
+
+void times_columns(const Vector3d& gain, DeltaJacobian& J) {
+  for (Matrix3d* M : {&J.dp, &J.dv, &J.dq}) *M = *M * gain.asDiagonal();
+}
+
 }  // namespace
 
 Preintegrator::Blocks::Blocks() {
@@ -51,34 +71,48 @@ Preintegrator::Blocks::Blocks() {
 }
 
 Preintegrator::Preintegrator(const ImuNoise& noise, const ImuBias& bias, int64_t t_begin_ns,
-                             const std::optional<ImuIncrement>& previous)
+                             const std::optional<ImuIncrement>& previous,
+                             const std::optional<ImuScale>& scale)
     : noise_(noise),
       gyro_bias_power_(wandering_power(noise.gyro_bias_power(), gyro_markov_bias(noise))),
       accel_bias_power_(wandering_power(noise.accel_bias_power(), accel_markov_bias(noise))),
       previous_(previous) {
   m_.t_begin_ns = m_.t_end_ns = t_begin_ns;
   m_.bias = bias;
+  m_.scale = scale;
+  if (!scale) return;
+  gain_.gyro = (1 + scale->gyro.array()).inverse();
+  gain_.accel = (1 + scale->accel.array()).inverse();
+}
+
+inline Preintegrator::Motion Preintegrator::corrected(const ImuIncrement& increment) const {
+  const double dt = increment.dt();
+  Motion motion{increment.dtheta_b - m_.bias.gyro * dt, increment.dvel_b - m_.bias.accel * dt};
+  if (m_.scale) {
+    motion.dtheta.array() *= gain_.gyro.array();
+    motion.dvel.array() *= gain_.accel.array();
+  }
+  return motion;
 }
 
 void Preintegrator::add(const ImuIncrement& increment) {
   if (increment.t_begin_ns != m_.t_end_ns || increment.t_end_ns <= increment.t_begin_ns)
     throw std::invalid_argument("preintegration: increments must follow each other");
   const double dt = increment.dt();
-  const Vector3d dtheta = increment.dtheta_b - m_.bias.gyro * dt;
-  const Vector3d dvel = increment.dvel_b - m_.bias.accel * dt;
-  Vector3d previous_dtheta = Vector3d::Zero();
-  Vector3d previous_dvel = Vector3d::Zero();
+  const Motion now = corrected(increment);
+  Motion before{Vector3d::Zero(), Vector3d::Zero()};
   if (previous_) {
     const double weight = previous_increment_scale(previous_->dt(), dt);
-    previous_dtheta = weight * (previous_->dtheta_b - m_.bias.gyro * previous_->dt());
-    previous_dvel = weight * (previous_->dvel_b - m_.bias.accel * previous_->dt());
+    before = corrected(*previous_);
+    before.dtheta *= weight;
+    before.dvel *= weight;
   }
-  const Vector3d u = velocity_with_sculling(previous_dtheta, previous_dvel, dtheta, dvel);
+  const Vector3d u = velocity_with_sculling(before.dtheta, before.dvel, now.dtheta, now.dvel);
   const Vector3d y = C_ * u;
-  m_.dq = nearly_normalized(m_.dq * so3::exp(rotation_with_coning(previous_dtheta, dtheta)));
+  m_.dq = nearly_normalized(m_.dq * so3::exp(rotation_with_coning(before.dtheta, now.dtheta)));
   const Matrix3d C_next = m_.dq.toRotationMatrix();
 
-  propagate_errors(increment, C_, C_next, y);
+  propagate_errors(increment, now, C_next, y);
 
   m_.iidp += dt * (m_.idp + dt * (m_.dp / 2 + dt * (m_.dv / 6 + y / 24)));
   m_.idp += dt * (m_.dp + dt * (m_.dv / 2 + y / 6));
@@ -90,23 +124,24 @@ void Preintegrator::add(const ImuIncrement& increment) {
   previous_ = increment;
 }
 
-void Preintegrator::propagate_errors(const ImuIncrement& increment, const Matrix3d& C,
+void Preintegrator::propagate_errors(const ImuIncrement& increment, const Motion& motion,
                                      const Matrix3d& C_next, const Vector3d& y) {
   const double dt = increment.dt();
-  const Matrix3d D = (0.5 * dt) * (C + C_next);
-  propagate_covariance(increment, C, D, y, dt);
-  propagate_jacobians(C, D, y, dt);
+  const Matrix3d D = (0.5 * dt) * (C_ + C_next);
+  propagate_covariance(increment, D, y, dt);
+  propagate_jacobians(motion, D, y, dt);
 }
 
-/// Rows of Phi applied to J, see propagate_covariance.
-void Preintegrator::propagate_jacobians(const Matrix3d& C, const Matrix3d& D, const Vector3d& y,
+void Preintegrator::propagate_jacobians(const Motion& motion, const Matrix3d& D, const Vector3d& y,
                                         double dt) {
-  const Matrix3d v_bg = cross(y, (0.5 * dt) * C - m_.J_dq_bg);
-  m_.J_dp_bg += dt * (m_.J_dv_bg + 0.5 * v_bg);
-  m_.J_dv_bg += v_bg;
-  m_.J_dp_ba += dt * (m_.J_dv_ba - 0.5 * D);
-  m_.J_dv_ba -= D;
-  m_.J_dq_bg -= D;
+  step_of_gyro((0.5 * dt) * C_ - m_.by_gyro_bias.dq, D, y, dt, m_.by_gyro_bias);
+  step_of_accel(D, dt, m_.by_accel_bias);
+  if (!m_.scale) return;
+  const Vector3d rate = motion.dtheta / dt;
+  const Vector3d force = motion.dvel / dt;
+  step_of_gyro(C_ * (0.5 * motion.dtheta).asDiagonal() - m_.by_gyro_scale.dq, D * rate.asDiagonal(),
+               y, dt, m_.by_gyro_scale);
+  step_of_accel(D * force.asDiagonal(), dt, m_.by_accel_scale);
 }
 
 /// Half of a sample's noise, W h.
@@ -133,8 +168,8 @@ void Preintegrator::set_bias_decay(double dt) {
 /// and S' = Phi (S + dt/2 W) Phi^T + dt/2 W, W = diag(0, q_a, q_g, q_bg, q_ba): the trapezoid of
 /// (42) with its term of second order, (Phi - I) W (Phi - I)^T dt/2, kept. Without that term a
 /// single sample would have a covariance that is not positive. (40), (42), (43)
-void Preintegrator::propagate_covariance(const ImuIncrement& increment, const Matrix3d& C,
-                                         const Matrix3d& D, const Vector3d& y, double dt) {
+void Preintegrator::propagate_covariance(const ImuIncrement& increment, const Matrix3d& D,
+                                         const Vector3d& y, double dt) {
   set_bias_decay(dt);
   const double q_g = noise_.gyro_noise_density * noise_.gyro_noise_density +
                      increment.extra_gyro_noise_density * increment.extra_gyro_noise_density;
@@ -146,7 +181,7 @@ void Preintegrator::propagate_covariance(const ImuIncrement& increment, const Ma
 
   // B = [y x] dt/2 C, so that w = -[y x] eps + B bg - D ba. Covariances of the old state with w:
   // x w^T = (x eps^T) [y x] + (x bg^T) B^T - (x ba^T) D^T.
-  const Matrix3d B = cross(y, h * C);
+  const Matrix3d B = cross(y, h * C_);
   const Matrix3d Bt = B.transpose();
   const Matrix3d Dt = D.transpose();
   const Matrix3d pw = times_cross(s.pe, y) + s.pg * Bt - s.pa * Dt;
@@ -185,29 +220,42 @@ void Preintegrator::propagate_covariance(const ImuIncrement& increment, const Ma
 
 Preintegration Preintegrator::result() const {
   Preintegration out = m_;
-  const Matrix3d Ct = C_.transpose();
-  out.J_dq_bg = Ct * m_.J_dq_bg;
-  const Blocks& s = cov_;
-  Matrix15d& S = out.covariance;
-  using namespace error_state;
-  const auto put = [&S](int row, int column, const Matrix3d& block) {
-    S.block<3, 3>(row, column) = block;
-    S.block<3, 3>(column, row) = block.transpose();
-  };
-  put(kPosition, kVelocity, s.pv);
-  put(kPosition, kAttitude, s.pe * C_);
-  put(kPosition, kGyroBias, s.pg);
-  put(kPosition, kAccelBias, s.pa);
-  put(kVelocity, kAttitude, s.ve * C_);
-  put(kVelocity, kGyroBias, s.vg);
-  put(kVelocity, kAccelBias, s.va);
-  put(kAttitude, kGyroBias, Ct * s.eg);
-  S.block<3, 3>(kPosition, kPosition) = s.pp;
-  S.block<3, 3>(kVelocity, kVelocity) = s.vv;
-  S.block<3, 3>(kAttitude, kAttitude) = Ct * s.ee * C_;
-  S.block<3, 3>(kGyroBias, kGyroBias).diagonal().setConstant(s.gg);
-  S.block<3, 3>(kAccelBias, kAccelBias).diagonal().setConstant(s.aa);
+  put_jacobians(out);
+  put_covariance(out.covariance);
   return out;
+}
+
+/// eps = C dtheta, and the true increments are the measured ones times the gain.
+void Preintegrator::put_jacobians(Preintegration& out) const {
+  const Matrix3d Ct = C_.transpose();
+  out.by_gyro_bias.dq = Ct * m_.by_gyro_bias.dq;
+  if (!m_.scale) return;
+  out.by_gyro_scale.dq = Ct * m_.by_gyro_scale.dq;
+  for (DeltaJacobian* J : {&out.by_gyro_bias, &out.by_gyro_scale}) times_columns(gain_.gyro, *J);
+  for (DeltaJacobian* J : {&out.by_accel_bias, &out.by_accel_scale}) times_columns(gain_.accel, *J);
+}
+
+void Preintegrator::put_covariance(NodeMatrix& S) const {
+  using namespace block;
+  const Matrix3d Ct = C_.transpose();
+  const Blocks& s = cov_;
+  const auto put = [&S](const NodeBlock& row, const NodeBlock& column, const Matrix3d& value) {
+    part(S, row, column) = value;
+    part(S, column, row) = value.transpose();
+  };
+  put(position, velocity, s.pv);
+  put(position, attitude, s.pe * C_);
+  put(position, gyro_bias, s.pg);
+  put(position, accel_bias, s.pa);
+  put(velocity, attitude, s.ve * C_);
+  put(velocity, gyro_bias, s.vg);
+  put(velocity, accel_bias, s.va);
+  put(attitude, gyro_bias, Ct * s.eg);
+  part(S, position, position) = s.pp;
+  part(S, velocity, velocity) = s.vv;
+  part(S, attitude, attitude) = Ct * s.ee * C_;
+  part(S, gyro_bias, gyro_bias).diagonal().setConstant(s.gg);
+  part(S, accel_bias, accel_bias).diagonal().setConstant(s.aa);
 }
 
 Preintegration Preintegrator::result_with_bias_decay() const {

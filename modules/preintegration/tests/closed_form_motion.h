@@ -98,10 +98,21 @@ class ClosedFormMotion {
   double live_;
 };
 
+/// What an IMU with these errors makes of increments.
+inline std::vector<ImuIncrement> measured(std::vector<ImuIncrement> increments, const ImuBias& bias,
+                                          const ImuScale& scale) {
+  for (ImuIncrement& i : increments) {
+    i.dtheta_b += scale.gyro.cwiseProduct(i.dtheta_b) + i.dt() * bias.gyro;
+    i.dvel_b += scale.accel.cwiseProduct(i.dvel_b) + i.dt() * bias.accel;
+  }
+  return increments;
+}
+
 /// Preintegrates all but the first increment, which stands before the interval.
 inline Preintegration preintegrate(const std::vector<ImuIncrement>& increments,
-                                   const ImuNoise& noise = {}, const ImuBias& bias = {}) {
-  Preintegrator integrator(noise, bias, increments[1].t_begin_ns, increments.front());
+                                   const ImuNoise& noise = {}, const ImuBias& bias = {},
+                                   const std::optional<ImuScale>& scale = std::nullopt) {
+  Preintegrator integrator(noise, bias, increments[1].t_begin_ns, increments.front(), scale);
   for (std::size_t i = 1; i < increments.size(); ++i) integrator.add(increments[i]);
   return integrator.result();
 }

@@ -10,8 +10,9 @@
 
 namespace foucault::testing {
 
-/// The paper's (35)-(44) with plain 15x15 products, in the attitude error of b(t), discretized as
-/// the exact derivative of one step: what the structured form must equal, and be faster than.
+/// The paper's (35)-(44) with plain products of whole matrices, in the attitude error of b(t),
+/// discretized as the exact derivative of one step: what the structured form must equal, and be
+/// faster than.
 class DensePreintegrator {
  public:
   DensePreintegrator(const ImuNoise& noise, const ImuBias& bias, const ImuIncrement& before)
@@ -38,13 +39,13 @@ class DensePreintegrator {
   }
 
   Preintegration result() const {
-    using namespace error_state;
+    using namespace block;
     Preintegration out = m_;
-    out.J_dp_bg = jacobian_.block<3, 3>(kPosition, kGyroBias);
-    out.J_dp_ba = jacobian_.block<3, 3>(kPosition, kAccelBias);
-    out.J_dv_bg = jacobian_.block<3, 3>(kVelocity, kGyroBias);
-    out.J_dv_ba = jacobian_.block<3, 3>(kVelocity, kAccelBias);
-    out.J_dq_bg = jacobian_.block<3, 3>(kAttitude, kGyroBias);
+    out.by_gyro_bias.dp = part(jacobian_, position, gyro_bias);
+    out.by_accel_bias.dp = part(jacobian_, position, accel_bias);
+    out.by_gyro_bias.dv = part(jacobian_, velocity, gyro_bias);
+    out.by_accel_bias.dv = part(jacobian_, velocity, accel_bias);
+    out.by_gyro_bias.dq = part(jacobian_, attitude, gyro_bias);
     return out;
   }
 
@@ -59,47 +60,47 @@ class DensePreintegrator {
   /// Biases are constant in the Jacobians and decay in the covariance.
   void propagate_errors(const Eigen::Matrix3d& C, const Eigen::Matrix3d& C_next,
                         const Eigen::Vector3d& y, double dt) {
-    using namespace error_state;
-    Matrix15d phi = transition(C, C_next, y, dt);
+    using namespace block;
+    NodeMatrix phi = transition(C, C_next, y, dt);
     jacobian_ = phi * jacobian_;
-    phi.block<3, 3>(kGyroBias, kGyroBias) *= std::exp(-dt / gyro_markov_bias(noise_).tau);
-    phi.block<3, 3>(kAccelBias, kAccelBias) *= std::exp(-dt / accel_markov_bias(noise_).tau);
-    const Matrix15d half = 0.5 * dt * Matrix15d(noise_powers().asDiagonal());
+    part(phi, gyro_bias, gyro_bias) *= std::exp(-dt / gyro_markov_bias(noise_).tau);
+    part(phi, accel_bias, accel_bias) *= std::exp(-dt / accel_markov_bias(noise_).tau);
+    const NodeMatrix half = 0.5 * dt * NodeMatrix(noise_powers().asDiagonal());
     m_.covariance = phi * (m_.covariance + half) * phi.transpose() + half;
   }
 
-  static Matrix15d transition(const Eigen::Matrix3d& C, const Eigen::Matrix3d& C_next,
-                              const Eigen::Vector3d& y, double dt) {
-    using namespace error_state;
+  static NodeMatrix transition(const Eigen::Matrix3d& C, const Eigen::Matrix3d& C_next,
+                               const Eigen::Vector3d& y, double dt) {
+    using namespace block;
     const Eigen::Matrix3d D = 0.5 * dt * (C + C_next);
     const Eigen::Matrix3d Y = so3::skew(y);
-    Eigen::Matrix<double, 3, 15> w = Eigen::Matrix<double, 3, 15>::Zero();
-    w.block<3, 3>(0, kAttitude) = -Y * C;
-    w.block<3, 3>(0, kGyroBias) = 0.5 * dt * Y * C;
-    w.block<3, 3>(0, kAccelBias) = -D;
-    Matrix15d phi = Matrix15d::Identity();
-    phi.block<3, 3>(kAttitude, kAttitude) = C_next.transpose() * C;
-    phi.block<3, 3>(kAttitude, kGyroBias) = -C_next.transpose() * D;
-    phi.middleRows<3>(kVelocity) += w;
-    phi.block<3, 3>(kPosition, kVelocity) = dt * Eigen::Matrix3d::Identity();
-    phi.middleRows<3>(kPosition) += 0.5 * dt * w;
+    Eigen::Matrix<double, 3, kNodeSize> w = Eigen::Matrix<double, 3, kNodeSize>::Zero();
+    columns_of(w, attitude) = -Y * C;
+    columns_of(w, gyro_bias) = 0.5 * dt * Y * C;
+    columns_of(w, accel_bias) = -D;
+    NodeMatrix phi = NodeMatrix::Identity();
+    part(phi, attitude, attitude) = C_next.transpose() * C;
+    part(phi, attitude, gyro_bias) = -C_next.transpose() * D;
+    rows_of(phi, velocity) += w;
+    part(phi, position, velocity) = dt * Eigen::Matrix3d::Identity();
+    rows_of(phi, position) += 0.5 * dt * w;
     return phi;
   }
 
-  Vector15d noise_powers() const {
-    using namespace error_state;
-    Vector15d W = Vector15d::Zero();
-    W.segment<3>(kVelocity).setConstant(std::pow(noise_.accel_noise_density, 2));
-    W.segment<3>(kAttitude).setConstant(std::pow(noise_.gyro_noise_density, 2));
-    W.segment<3>(kGyroBias).setConstant(noise_.gyro_bias_power());
-    W.segment<3>(kAccelBias).setConstant(noise_.accel_bias_power());
+  NodeVector noise_powers() const {
+    using namespace block;
+    NodeVector W = NodeVector::Zero();
+    part(W, velocity).setConstant(std::pow(noise_.accel_noise_density, 2));
+    part(W, attitude).setConstant(std::pow(noise_.gyro_noise_density, 2));
+    part(W, gyro_bias).setConstant(noise_.gyro_bias_power());
+    part(W, accel_bias).setConstant(noise_.accel_bias_power());
     return W;
   }
 
   ImuNoise noise_;
   ImuIncrement before_;
   Preintegration m_;
-  Matrix15d jacobian_ = Matrix15d::Identity();
+  NodeMatrix jacobian_ = NodeMatrix::Identity();
 };
 
 }  // namespace foucault::testing

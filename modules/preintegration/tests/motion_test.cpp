@@ -16,29 +16,28 @@ using Eigen::Vector3d;
 using testing::ClosedFormMotion;
 using testing::preintegrate;
 using testing::wuhan_earth;
-using namespace error_state;
+using namespace block;
 
-Vector15d prediction_error(const ClosedFormMotion& motion, const EarthModel& model, double begin,
-                           double end, double rate_hz) {
+NodeVector prediction_error(const ClosedFormMotion& motion, const EarthModel& model, double begin,
+                            double end, double rate_hz) {
   const Preintegration pre = preintegrate(motion.increments(begin, end, rate_hz));
   return boxminus(predict(motion.state(begin), pre, model), motion.state(end));
 }
 
 TEST(Motion, LandsOnExactTruthWithSecondOrderInDt) {
   const ClosedFormMotion motion(wuhan_earth());
-  const Vector15d coarse = prediction_error(motion, wuhan_earth(), 2, 3, 50);
-  const Vector15d fine = prediction_error(motion, wuhan_earth(), 2, 3, 100);
-  const Vector15d finest = prediction_error(motion, wuhan_earth(), 2, 3, 200);
+  const NodeVector coarse = prediction_error(motion, wuhan_earth(), 2, 3, 50);
+  const NodeVector fine = prediction_error(motion, wuhan_earth(), 2, 3, 100);
+  const NodeVector finest = prediction_error(motion, wuhan_earth(), 2, 3, 200);
   // Position by trapezoid (20): error a_dot dt^2 T / 12, about 5e-6 m here at 200 Hz.
-  EXPECT_LT(finest.segment<3>(kPosition).norm(), 1e-5);
+  EXPECT_LT(part(finest, position).norm(), 1e-5);
   // Velocity: rates that change otherwise than linearly within two samples, 6e-9 m/s.
-  EXPECT_LT(finest.segment<3>(kVelocity).norm(), 1e-8);
-  EXPECT_LT(finest.segment<3>(kAttitude).norm(), 1e-8);
-  const double order =
-      std::log2(coarse.segment<3>(kPosition).norm() / fine.segment<3>(kPosition).norm());
+  EXPECT_LT(part(finest, velocity).norm(), 1e-8);
+  EXPECT_LT(part(finest, attitude).norm(), 1e-8);
+  const double order = std::log2(part(coarse, position).norm() / part(fine, position).norm());
   EXPECT_NEAR(order, 2, 0.1);
   const double attitude_order =
-      std::log2(coarse.segment<3>(kAttitude).norm() / fine.segment<3>(kAttitude).norm());
+      std::log2(part(coarse, attitude).norm() / part(fine, attitude).norm());
   EXPECT_NEAR(attitude_order, 3, 0.1);  // (15) with the previous sample
 }
 
@@ -46,12 +45,12 @@ TEST(Motion, WithoutTheEarthTheSameTestFails) {
   const ClosedFormMotion motion(wuhan_earth());
   EarthModel still = wuhan_earth();
   still.omega_ie_w.setZero();
-  const Vector15d error = prediction_error(motion, still, 2, 3, 200);
-  EXPECT_NEAR(error.segment<3>(kAttitude).norm(), 7.292e-5, 1e-7);  // 15 deg/h for one second
+  const NodeVector error = prediction_error(motion, still, 2, 3, 200);
+  EXPECT_NEAR(part(error, attitude).norm(), 7.292e-5, 1e-7);  // 15 deg/h for one second
   // Of the order of 2 w v T = 1.8 mm/s and half of it in position: a hundred times the bounds
   // above.
-  EXPECT_GT(error.segment<3>(kVelocity).norm(), 3e-4);
-  EXPECT_GT(error.segment<3>(kPosition).norm(), 1e-4);
+  EXPECT_GT(part(error, velocity).norm(), 3e-4);
+  EXPECT_GT(part(error, position).norm(), 1e-4);
 }
 
 /// Gravity that changes ten thousand times faster with the place than the real one.
@@ -65,26 +64,26 @@ EarthModel steep_earth() {
 
 TEST(Motion, LandsOnExactTruthWhereGravityChangesWithThePlace) {
   const ClosedFormMotion motion(steep_earth());
-  const Vector15d error = prediction_error(motion, steep_earth(), 2, 2.2, 200);
+  const NodeVector error = prediction_error(motion, steep_earth(), 2, 2.2, 200);
   // Gravity follows the way within the interval, as it would be without the change of gravity:
   // left is G^2 v T^4 / 24 = 1.8e-7 m/s.
-  EXPECT_LT(error.segment<3>(kVelocity).norm(), 3e-7);
+  EXPECT_LT(part(error, velocity).norm(), 3e-7);
   EarthModel constant = steep_earth();
   constant.g_w = steep_earth().gravity(motion.p(2));
   constant.gravity_gradient.setZero();
-  const Vector15d without = prediction_error(motion, constant, 2, 2.2, 200);
-  EXPECT_GT(without.segment<3>(kVelocity).norm(), 1e-3);  // G v T^2 / 2
+  const NodeVector without = prediction_error(motion, constant, 2, 2.2, 200);
+  EXPECT_GT(part(without, velocity).norm(), 1e-3);  // G v T^2 / 2
 }
 
 TEST(Motion, RestOnTheEarthStaysAtRest) {
   const EarthModel earth = wuhan_earth();
   const ClosedFormMotion rest(earth, 0);
-  const Vector15d error = prediction_error(rest, earth, 0, 60, 200);
+  const NodeVector error = prediction_error(rest, earth, 0, 60, 200);
   // To first order in w T the velocity would be wrong by w^2 g T^3 / 6, 1.9 mm/s, after a minute.
   // What is left is the end of the series, (w T)^4 g T / 120.
-  EXPECT_LT(error.segment<3>(kVelocity).norm(), 2e-9);
-  EXPECT_LT(error.segment<3>(kPosition).norm(), 1e-7);
-  EXPECT_LT(error.segment<3>(kAttitude).norm(), 1e-12);
+  EXPECT_LT(part(error, velocity).norm(), 2e-9);
+  EXPECT_LT(part(error, position).norm(), 1e-7);
+  EXPECT_LT(part(error, attitude).norm(), 1e-12);
 }
 
 /// Section III to the letter: (13), (16)-(20) and (21)-(29), attitude used while integrating,
@@ -154,50 +153,123 @@ NodeState random_state(std::mt19937& rng, double rotation) {
   return x;
 }
 
-Matrix15d numerical_jacobian(const NodeState& x0, const NodeState& x1, const Preintegration& pre,
-                             const EarthModel& earth, bool by_x0) {
-  Matrix15d J;
-  for (int i = 0; i < 15; ++i) {
-    const Vector15d d = 1e-6 * Vector15d::Unit(i);
-    const auto at = [&](const Vector15d& step) {
-      return by_x0 ? motion_residual_value(boxplus(x0, step), x1, pre, earth)
-                   : motion_residual_value(x0, boxplus(x1, step), pre, earth);
-    };
-    J.col(i) = (at(d) - at(-d)) / 2e-6;
+/// Central differences of f about zero, a column for each of kColumns.
+template <int kColumns, class Function>
+Eigen::Matrix<double, kNodeSize, kColumns> numerical_jacobian(const Function& f) {
+  using Step = Eigen::Matrix<double, kColumns, 1>;
+  Eigen::Matrix<double, kNodeSize, kColumns> J;
+  for (int i = 0; i < kColumns; ++i) {
+    const Step d = 1e-6 * Step::Unit(i);
+    J.col(i) = (f(d) - f(Step(-d))) / 2e-6;
   }
   return J;
 }
+
+const ImuScale kScale{{0.02, -0.03, 0.01}, {-0.01, 0.02, 0.03}};
 
 TEST(Motion, JacobiansAreDerivatives) {
   // An Earth that turns a thousand times faster, so that its terms do not hide in rounding.
   EarthModel earth = steep_earth();
   earth.omega_ie_w *= 1000;
   const ClosedFormMotion motion(earth);
-  Preintegration pre = preintegrate(motion.increments(2, 3, 100));
+  Preintegration pre = preintegrate(motion.increments(2, 3, 100), {}, {}, kScale);
   pre.gyro_bias_decay = 0.8;
   pre.accel_bias_decay = 0.7;
   std::mt19937 rng{7};
   for (const double rotation : {0.0, 1e-9, 0.5, 1.7}) {
     const NodeState x0 = random_state(rng, rotation);
     const NodeState x1 = random_state(rng, rotation);
-    const MotionResidual m = motion_residual(x0, x1, pre, earth);
-    const Matrix15d J0 = numerical_jacobian(x0, x1, pre, earth, true);
-    const Matrix15d J1 = numerical_jacobian(x0, x1, pre, earth, false);
+    const ImuScale scale{{0.03, 0.01, -0.02}, {0.02, -0.02, 0.01}};
+    const MotionResidual m = motion_residual(x0, x1, pre, earth, scale);
+    const auto residual = [&](const NodeState& begin, const NodeState& end, const ImuScale& at) {
+      return motion_residual_value(begin, end, pre, earth, at);
+    };
+    const NodeMatrix J0 = numerical_jacobian<kNodeSize>(
+        [&](const NodeVector& d) { return residual(boxplus(x0, d), x1, scale); });
+    const NodeMatrix J1 = numerical_jacobian<kNodeSize>(
+        [&](const NodeVector& d) { return residual(x0, boxplus(x1, d), scale); });
+    const NodeByAxis J_gyro = numerical_jacobian<3>([&](const Vector3d& d) {
+      return residual(x0, x1, {scale.gyro + d, scale.accel});
+    });
+    const NodeByAxis J_accel = numerical_jacobian<3>([&](const Vector3d& d) {
+      return residual(x0, x1, {scale.gyro, scale.accel + d});
+    });
     // Central differences: rounding of 1e2 m * 1e-16 / 1e-6 and third derivatives * 1e-12.
     EXPECT_LT((m.J_x0 - J0).cwiseAbs().maxCoeff(), 2e-7) << "rotation " << rotation;
     EXPECT_LT((m.J_x1 - J1).cwiseAbs().maxCoeff(), 2e-7) << "rotation " << rotation;
-    EXPECT_EQ(m.r, motion_residual_value(x0, x1, pre, earth));
+    EXPECT_LT((m.J_gyro_scale - J_gyro).cwiseAbs().maxCoeff(), 2e-7) << "rotation " << rotation;
+    EXPECT_LT((m.J_accel_scale - J_accel).cwiseAbs().maxCoeff(), 2e-7) << "rotation " << rotation;
+    EXPECT_EQ(m.r, residual(x0, x1, scale));
   }
+}
+
+TEST(Motion, ScaleJacobiansAreThoseOfIntegratingAgain) {
+  const EarthModel earth = wuhan_earth();
+  const ClosedFormMotion motion(earth);
+  const std::vector<ImuIncrement> increments = motion.increments(2, 3, 200);
+  const NodeState x0 = motion.state(2), x1 = motion.state(3);
+  const auto again = [&](const ImuScale& scale) {
+    return motion_residual_value(x0, x1, preintegrate(increments, {}, {}, scale), earth, scale);
+  };
+  const MotionResidual m =
+      motion_residual(x0, x1, preintegrate(increments, {}, {}, kScale), earth, kScale);
+  const NodeByAxis J_gyro = numerical_jacobian<3>([&](const Vector3d& d) {
+    return again({kScale.gyro + d, kScale.accel});
+  });
+  const NodeByAxis J_accel = numerical_jacobian<3>([&](const Vector3d& d) {
+    return again({kScale.gyro, kScale.accel + d});
+  });
+  // Coning and sculling are not in the Jacobians: relative 1e-5 at 200 Hz, of 10 or less.
+  EXPECT_LT((m.J_gyro_scale - J_gyro).cwiseAbs().maxCoeff(), 1e-4);
+  EXPECT_LT((m.J_accel_scale - J_accel).cwiseAbs().maxCoeff(), 1e-4);
+  EXPECT_GT(m.J_gyro_scale.norm(), 1);
+  EXPECT_GT(m.J_accel_scale.norm(), 9);
+}
+
+/// Error of (46) against integrating again, at errors of the sensors that are `share` of some.
+double error_of_linear_correction(double share) {
+  const EarthModel earth = wuhan_earth();
+  const ClosedFormMotion motion(earth);
+  const std::vector<ImuIncrement> increments = motion.increments(2, 3, 200);
+  NodeState x0 = motion.state(2);
+  x0.bias = {share * Vector3d(0.02, -0.01, 0.01), share * Vector3d(0.1, 0.2, -0.1)};
+  const ImuScale scale{share * kScale.gyro, share * kScale.accel};
+  const Preintegration at_zero = preintegrate(increments, {}, {}, ImuScale{});
+  const Preintegration again = preintegrate(increments, {}, x0.bias, scale);
+  return boxminus(predict(x0, at_zero, earth, scale), predict(x0, again, earth, scale)).norm();
+}
+
+TEST(Motion, LinearCorrectionIsOfSecondOrder) {
+  const double whole = error_of_linear_correction(0.4);
+  const double half = error_of_linear_correction(0.2);
+  EXPECT_GT(whole, 1e-5);
+  EXPECT_NEAR(whole / half, 4, 0.1);
+}
+
+TEST(Motion, LandsOnExactTruthWithTheTrueScale) {
+  const EarthModel earth = wuhan_earth();
+  const ClosedFormMotion motion(earth);
+  const ImuScale scale{{1e-3, -1e-3, 1e-3}, {-1e-3, 1e-3, -1e-3}};
+  const std::vector<ImuIncrement> recorded =
+      testing::measured(motion.increments(2, 3, 200), {}, scale);
+  const NodeState x0 = motion.state(2), x1 = motion.state(3);
+  const auto error = [&](const ImuScale& integrated_at, const ImuScale& of_the_state) {
+    const Preintegration pre = preintegrate(recorded, {}, {}, integrated_at);
+    return boxminus(predict(x0, pre, earth, of_the_state), x1).norm();
+  };
+  EXPECT_LT(error(scale, scale), 1e-5);  // as without scale errors, see above
+  EXPECT_LT(error({}, scale), 3e-5);     // (1000 ppm)^2 of 10 m/s and m beside it
+  EXPECT_GT(error({}, {}), 5e-3);
 }
 
 TEST(Motion, PredictionHasNoResidual) {
   const EarthModel earth = wuhan_earth();
   const ClosedFormMotion motion(earth);
-  const Preintegration pre = preintegrate(motion.increments(2, 3, 100));
+  const Preintegration pre = preintegrate(motion.increments(2, 3, 100), {}, {}, ImuScale{});
   std::mt19937 rng{11};
   const NodeState x0 = random_state(rng, 1);
-  const Vector15d r = motion_residual_value(x0, predict(x0, pre, earth), pre, earth);
-  EXPECT_LT(r.norm(), 1e-12);
+  const NodeState x1 = predict(x0, pre, earth, kScale);
+  EXPECT_LT(motion_residual_value(x0, x1, pre, earth, kScale).norm(), 1e-12);
 }
 
 TEST(Motion, PredictedCovarianceIsThatOfPerturbedPredictions) {
@@ -207,18 +279,89 @@ TEST(Motion, PredictedCovarianceIsThatOfPerturbedPredictions) {
   pre.covariance.setZero();
   const NodeState x0 = motion.state(2);
   const NodeState x1 = predict(x0, pre, earth);
-  Matrix15d F;
-  for (int i = 0; i < 15; ++i) {
-    const Vector15d d = 1e-6 * Vector15d::Unit(i);
-    F.col(i) = (boxminus(predict(boxplus(x0, d), pre, earth), x1) -
-                boxminus(predict(boxplus(x0, -d), pre, earth), x1)) /
-               2e-6;
-  }
-  Matrix15d P = Matrix15d::Identity();
+  const NodeMatrix F = numerical_jacobian<kNodeSize>(
+      [&](const NodeVector& d) { return boxminus(predict(boxplus(x0, d), pre, earth), x1); });
+  NodeMatrix P = NodeMatrix::Identity();
   P(2, 7) = P(7, 2) = 0.3;
-  const Matrix15d expected = F * P * F.transpose();
+  const NodeMatrix expected = F * P * F.transpose();
   EXPECT_LT((predict_covariance(x0, x1, pre, earth, P) - expected).cwiseAbs().maxCoeff(),
             1e-6 * expected.cwiseAbs().maxCoeff());
+}
+
+const Block kOther{"other", 2, "1"};  ///< does not act on the IMU
+
+/// The gyro's scale decays to 0.67 in a second.
+Layout slow_blocks() {
+  return Layout().add(block::accel_scale, 0.03).add(kOther, 0.5).add(block::gyro_scale, 0.02, 2.5);
+}
+
+StateMatrix random_covariance(int size, unsigned seed) {
+  std::mt19937 rng{seed};
+  std::normal_distribution<double> normal;
+  StateMatrix A(size, size);
+  for (double& a : A.reshaped()) a = normal(rng);
+  return A * A.transpose();
+}
+
+TEST(Motion, PredictedCovarianceWithSlowBlocksIsThatOfPerturbedPredictions) {
+  const EarthModel earth = wuhan_earth();
+  const ClosedFormMotion motion(earth);
+  const Layout layout = slow_blocks();
+  const int n = layout.slow_size();
+  ImuNoise noise;
+  noise.gyro_noise_density = 0.1;
+  noise.accel_noise_density = 0.3;
+  noise.gyro_bias_sigma = noise.accel_bias_sigma = 0.1;
+  SlowVector slow(n);
+  slow << 0.01, -0.01, 0.02, 5, 5, 0.02, 0.01, -0.03;
+  const Preintegration pre =
+      preintegrate(motion.increments(2, 3, 100), noise, {}, layout.imu_scale(slow));
+  const NodeState x0 = motion.state(2);
+  const NodeState x1 = predict(x0, pre, earth, layout.imu_scale(slow));
+
+  StateMatrix phi = StateMatrix::Zero(layout.size(), layout.size());
+  for (int i = 0; i < layout.size(); ++i) {
+    const auto moved = [&](double step) {
+      const StateVector d = step * StateVector::Unit(layout.size(), i);
+      const SlowVector slow_moved = slow + d.tail(n);
+      const NodeVector node = d.head<kNodeSize>();
+      return boxminus(predict(boxplus(x0, node), pre, earth, layout.imu_scale(slow_moved)), x1);
+    };
+    phi.col(i).head<kNodeSize>() = (moved(1e-6) - moved(-1e-6)) / 2e-6;
+  }
+  const double left = std::exp(-1 / 2.5);
+  phi.diagonal().tail(n) << 1, 1, 1, 1, 1, left, left, left;
+  const StateMatrix P = random_covariance(layout.size(), 3);
+  StateMatrix expected = phi * P * phi.transpose();
+  node_part(expected) += predict_covariance(x0, x1, pre, earth, NodeMatrix(NodeMatrix::Zero()));
+  expected.diagonal().tail<3>().array() += (1 - left * left) * 0.02 * 0.02;
+
+  const StateMatrix predicted = predict_covariance(x0, x1, pre, earth, P, layout, slow);
+  // Rounding in central differences: 1e2 m * 1e-16 / 1e-6.
+  const StateVector s = expected.diagonal().cwiseSqrt().cwiseInverse();
+  EXPECT_LT((s.asDiagonal() * (predicted - expected) * s.asDiagonal()).cwiseAbs().maxCoeff(), 3e-8);
+}
+
+TEST(Motion, PredictedCovarianceWithoutSlowBlocksIsThatOfTheNode) {
+  const EarthModel earth = wuhan_earth();
+  const ClosedFormMotion motion(earth);
+  const Preintegration pre = preintegrate(motion.increments(2, 3, 100));
+  const NodeState x0 = motion.state(2);
+  const NodeState x1 = predict(x0, pre, earth);
+  const StateMatrix P = random_covariance(kNodeSize, 4);
+  EXPECT_EQ(predict_covariance(x0, x1, pre, earth, P, Layout(), SlowVector(0)),
+            predict_covariance(x0, x1, pre, earth, NodeMatrix(P)));
+}
+
+TEST(Motion, RefusesScalesThatWereNotIntegrated) {
+  const ClosedFormMotion motion(wuhan_earth());
+  const Preintegration pre = preintegrate(motion.increments(2, 3, 100));
+  const Layout layout = slow_blocks();
+  const StateMatrix P = random_covariance(layout.size(), 5);
+  const SlowVector slow = SlowVector::Zero(layout.slow_size());
+  EXPECT_THROW(
+      predict_covariance(motion.state(2), motion.state(3), pre, wuhan_earth(), P, layout, slow),
+      std::invalid_argument);
 }
 
 }  // namespace

@@ -19,7 +19,7 @@ using testing::ClosedFormMotion;
 using testing::DensePreintegrator;
 using testing::preintegrate;
 using testing::wuhan_earth;
-using namespace error_state;
+using namespace block;
 
 /// Noise with every part of comparable effect over a second, so that no block hides.
 ImuNoise loud_noise() {
@@ -33,8 +33,8 @@ ImuNoise loud_noise() {
 }
 
 /// |A - B| with every entry in units of B's own sigmas.
-double normalized_difference(const Matrix15d& A, const Matrix15d& B) {
-  const Vector15d s = B.diagonal().cwiseSqrt().cwiseInverse();
+double normalized_difference(const NodeMatrix& A, const NodeMatrix& B) {
+  const NodeVector s = B.diagonal().cwiseSqrt().cwiseInverse();
   return (s.asDiagonal() * (A - B) * s.asDiagonal()).cwiseAbs().maxCoeff();
 }
 
@@ -51,11 +51,11 @@ TEST(Preintegrator, StructuredFormEqualsDenseProducts) {
   const auto near = [](const auto& a, const auto& b) {
     EXPECT_LT((a - b).cwiseAbs().maxCoeff(), 1e-12);
   };
-  near(structured.J_dp_bg, dense.J_dp_bg);
-  near(structured.J_dp_ba, dense.J_dp_ba);
-  near(structured.J_dv_bg, dense.J_dv_bg);
-  near(structured.J_dv_ba, dense.J_dv_ba);
-  near(structured.J_dq_bg, dense.J_dq_bg);
+  near(structured.by_gyro_bias.dp, dense.by_gyro_bias.dp);
+  near(structured.by_accel_bias.dp, dense.by_accel_bias.dp);
+  near(structured.by_gyro_bias.dv, dense.by_gyro_bias.dv);
+  near(structured.by_accel_bias.dv, dense.by_accel_bias.dv);
+  near(structured.by_gyro_bias.dq, dense.by_gyro_bias.dq);
   near(structured.dp, dense.dp);
   near(structured.dv, dense.dv);
   near(structured.dq.coeffs(), dense.dq.coeffs());
@@ -65,29 +65,31 @@ TEST(Preintegrator, CovarianceApproachesVanLoan) {
   const ClosedFormMotion motion(wuhan_earth());
   const ImuNoise noise = loud_noise();
   // Van Loan on a fine grid, rates constant within 1 ms.
-  Matrix15d exact = Matrix15d::Zero();
+  NodeMatrix exact = NodeMatrix::Zero();
   for (int k = 0; k < 1000; ++k) {
     const double t = 3 + (k + 0.5) * 1e-3;
-    Matrix15d F = Matrix15d::Zero();
+    NodeMatrix F = NodeMatrix::Zero();
     const Matrix3d C = (motion.q(3).conjugate() * motion.q(t)).toRotationMatrix();
-    F.block<3, 3>(kPosition, kVelocity).setIdentity();
-    F.block<3, 3>(kVelocity, kAttitude) = -C * so3::skew(motion.specific_force_b(t));
-    F.block<3, 3>(kVelocity, kAccelBias) = -C;
-    F.block<3, 3>(kAttitude, kAttitude) = -so3::skew(motion.omega_ib_b(t));
-    F.block<3, 3>(kAttitude, kGyroBias) = -Matrix3d::Identity();
-    F.block<6, 6>(kGyroBias, kGyroBias) = -Eigen::Matrix<double, 6, 6>::Identity() / noise.bias_tau;
-    Vector15d W = Vector15d::Zero();
-    W.segment<3>(kVelocity).setConstant(std::pow(noise.accel_noise_density, 2));
-    W.segment<3>(kAttitude).setConstant(std::pow(noise.gyro_noise_density, 2));
-    W.segment<3>(kGyroBias).setConstant(noise.gyro_bias_power());
-    W.segment<3>(kAccelBias).setConstant(noise.accel_bias_power());
-    Eigen::Matrix<double, 30, 30> M = Eigen::Matrix<double, 30, 30>::Zero();
-    M.block<15, 15>(0, 0) = -F;
-    M.block<15, 15>(0, 15) = W.asDiagonal();
-    M.block<15, 15>(15, 15) = F.transpose();
-    const Eigen::Matrix<double, 30, 30> E = (M * 1e-3).exp();
-    const Matrix15d phi = E.block<15, 15>(15, 15).transpose();
-    exact = phi * exact * phi.transpose() + phi * E.block<15, 15>(0, 15);
+    part(F, position, velocity).setIdentity();
+    part(F, velocity, attitude) = -C * so3::skew(motion.specific_force_b(t));
+    part(F, velocity, accel_bias) = -C;
+    part(F, attitude, attitude) = -so3::skew(motion.omega_ib_b(t));
+    part(F, attitude, gyro_bias) = -Matrix3d::Identity();
+    part(F, gyro_bias, gyro_bias) = -Matrix3d::Identity() / noise.bias_tau;
+    part(F, accel_bias, accel_bias) = -Matrix3d::Identity() / noise.bias_tau;
+    NodeVector W = NodeVector::Zero();
+    part(W, velocity).setConstant(std::pow(noise.accel_noise_density, 2));
+    part(W, attitude).setConstant(std::pow(noise.gyro_noise_density, 2));
+    part(W, gyro_bias).setConstant(noise.gyro_bias_power());
+    part(W, accel_bias).setConstant(noise.accel_bias_power());
+    using Twice = Eigen::Matrix<double, 2 * kNodeSize, 2 * kNodeSize>;
+    Twice M = Twice::Zero();
+    M.topLeftCorner<kNodeSize, kNodeSize>() = -F;
+    M.topRightCorner<kNodeSize, kNodeSize>() = W.asDiagonal();
+    M.bottomRightCorner<kNodeSize, kNodeSize>() = F.transpose();
+    const Twice E = (M * 1e-3).exp();
+    const NodeMatrix phi = E.bottomRightCorner<kNodeSize, kNodeSize>().transpose();
+    exact = phi * exact * phi.transpose() + phi * E.topRightCorner<kNodeSize, kNodeSize>();
   }
   const double at_100 =
       normalized_difference(preintegrate(motion.increments(3, 4, 100), noise).covariance, exact);
@@ -107,7 +109,7 @@ TEST(Preintegrator, CovarianceMatchesMonteCarlo) {
   const auto draw = [&] { return Vector3d(normal(rng), normal(rng), normal(rng)); };
 
   constexpr int kRuns = 4000;
-  Matrix15d sample = Matrix15d::Zero();
+  NodeMatrix sample = NodeMatrix::Zero();
   for (int run = 0; run < kRuns; ++run) {
     std::vector<ImuIncrement> noisy = clean;
     Vector3d bg = Vector3d::Zero(), ba = Vector3d::Zero();
@@ -123,7 +125,7 @@ TEST(Preintegrator, CovarianceMatchesMonteCarlo) {
           noise.accel_noise_density * std::sqrt(dt) * draw() + 0.5 * dt * (ba_before + ba);
     }
     const Preintegration measured = preintegrate(noisy, noise);
-    Vector15d error;  // true minus measured
+    NodeVector error;  // true minus measured
     error << truth.dp - measured.dp, truth.dv - measured.dv,
         so3::log(measured.dq.conjugate() * truth.dq), bg, ba;
     sample += error * error.transpose() / kRuns;
@@ -135,35 +137,116 @@ TEST(Preintegrator, CovarianceMatchesMonteCarlo) {
 
 TEST(Preintegrator, ASingleSampleHasAPositiveCovariance) {
   const ClosedFormMotion motion(wuhan_earth());
-  const Matrix15d P = preintegrate(motion.increments(3, 3.005, 200), loud_noise()).covariance;
-  EXPECT_EQ(Eigen::LLT<Matrix15d>(P).info(), Eigen::Success);
+  const NodeMatrix P = preintegrate(motion.increments(3, 3.005, 200), loud_noise()).covariance;
+  EXPECT_EQ(Eigen::LLT<NodeMatrix>(P).info(), Eigen::Success);
   // White noise over one interval: dt^3/2 by the trapezoid, dt^3/3 exactly.
-  EXPECT_NEAR(P(kPosition, kPosition), 9e-4 * std::pow(0.005, 3) / 2, 1e-12);
+  EXPECT_NEAR(part(P, position, position)(0, 0), 9e-4 * std::pow(0.005, 3) / 2, 1e-12);
+}
+
+/// Errors of the sensors at which to integrate.
+struct SensorErrors {
+  ImuBias bias;
+  std::optional<ImuScale> scale;
+};
+
+Preintegration preintegrate_at(const std::vector<ImuIncrement>& increments,
+                               const SensorErrors& at) {
+  return preintegrate(increments, {}, at.bias, at.scale);
+}
+
+const ImuBias kBias{{0.01, -0.02, 0.015}, {0.1, 0.05, -0.2}};
+/// Large, so that 1 / (1 + scale) in a column shows.
+const ImuScale kScale{{0.02, -0.03, 0.01}, {-0.01, 0.02, 0.03}};
+
+/// Difference quotient of the deltas by what `shifted` makes of a step.
+template <class Shifted>
+void expect_derivatives(const DeltaJacobian& J, double size, const Shifted& shifted) {
+  constexpr double kStep = 1e-5;
+  for (int axis = 0; axis < 3; ++axis) {
+    const Preintegration plus = shifted(Vector3d(kStep * Vector3d::Unit(axis)));
+    const Preintegration minus = shifted(Vector3d(-kStep * Vector3d::Unit(axis)));
+    // The step's derivative leaves out how a block enters the 1/12 coning and sculling terms:
+    // relative (change of the rate from sample to sample) / 12, here below 1e-5.
+    const auto near = [&](const Vector3d& difference, const Vector3d& column, double scale) {
+      EXPECT_LT((difference / (2 * kStep) - column).norm(), 2e-5 * scale);
+    };
+    near(plus.dp - minus.dp, J.dp.col(axis), 0.5 * size);
+    near(plus.dv - minus.dv, J.dv.col(axis), size);
+    near(so3::log(minus.dq.conjugate() * plus.dq), J.dq.col(axis), 1);
+  }
+}
+
+void expect_bias_derivatives(const std::vector<ImuIncrement>& increments, const SensorErrors& at) {
+  const Preintegration pre = preintegrate_at(increments, at);
+  expect_derivatives(pre.by_gyro_bias, 5, [&](const Vector3d& d) {
+    SensorErrors shifted = at;
+    shifted.bias.gyro += d;
+    return preintegrate_at(increments, shifted);
+  });
+  expect_derivatives(pre.by_accel_bias, 1, [&](const Vector3d& d) {
+    SensorErrors shifted = at;
+    shifted.bias.accel += d;
+    return preintegrate_at(increments, shifted);
+  });
 }
 
 TEST(Preintegrator, BiasJacobiansAreDerivatives) {
-  const ClosedFormMotion motion(wuhan_earth());
-  const std::vector<ImuIncrement> increments = motion.increments(3, 4, 200);
-  const ImuBias at{{0.01, -0.02, 0.015}, {0.1, 0.05, -0.2}};
-  const Preintegration pre = preintegrate(increments, {}, at);
-  constexpr double kStep = 1e-5;
-  for (int axis = 0; axis < 3; ++axis) {
-    const Vector3d d = kStep * Vector3d::Unit(axis);
-    const Preintegration g1 = preintegrate(increments, {}, {at.gyro + d, at.accel});
-    const Preintegration g0 = preintegrate(increments, {}, {at.gyro - d, at.accel});
-    const Preintegration a1 = preintegrate(increments, {}, {at.gyro, at.accel + d});
-    const Preintegration a0 = preintegrate(increments, {}, {at.gyro, at.accel - d});
-    // The step's derivative leaves out how the bias enters the 1/12 coning and sculling terms:
-    // relative (change of the rate from sample to sample) / 12, here below 1e-5.
-    const auto near = [](const Vector3d& difference, const Vector3d& column, double scale) {
-      EXPECT_LT((difference / (2 * kStep) - column).norm(), 2e-5 * scale);
-    };
-    near(g1.dp - g0.dp, pre.J_dp_bg.col(axis), 2);
-    near(g1.dv - g0.dv, pre.J_dv_bg.col(axis), 5);
-    near(so3::log(g0.dq.conjugate() * g1.dq), pre.J_dq_bg.col(axis), 1);
-    near(a1.dp - a0.dp, pre.J_dp_ba.col(axis), 0.5);
-    near(a1.dv - a0.dv, pre.J_dv_ba.col(axis), 1);
+  const std::vector<ImuIncrement> increments =
+      ClosedFormMotion(wuhan_earth()).increments(3, 4, 200);
+  expect_bias_derivatives(increments, {kBias, std::nullopt});
+  expect_bias_derivatives(increments, {kBias, kScale});
+}
+
+TEST(Preintegrator, ScaleJacobiansAreDerivatives) {
+  const std::vector<ImuIncrement> increments =
+      ClosedFormMotion(wuhan_earth()).increments(3, 4, 200);
+  for (const ImuScale& scale : {ImuScale{}, kScale}) {
+    const SensorErrors at{kBias, scale};
+    const Preintegration pre = preintegrate_at(increments, at);
+    expect_derivatives(pre.by_gyro_scale, 5, [&](const Vector3d& d) {
+      SensorErrors shifted = at;
+      shifted.scale->gyro += d;
+      return preintegrate_at(increments, shifted);
+    });
+    expect_derivatives(pre.by_accel_scale, 10, [&](const Vector3d& d) {  // 9.8 m/s in a second
+      SensorErrors shifted = at;
+      shifted.scale->accel += d;
+      return preintegrate_at(increments, shifted);
+    });
   }
+}
+
+TEST(Preintegrator, TheTrueScaleGivesBackTheDeltas) {
+  const std::vector<ImuIncrement> ideal = ClosedFormMotion(wuhan_earth()).increments(3, 4, 200);
+  const ImuScale scale{{1e-3, -1e-3, 1e-3}, {-1e-3, 1e-3, -1e-3}};
+  const std::vector<ImuIncrement> recorded = testing::measured(ideal, kBias, scale);
+  const Preintegration truth = preintegrate(ideal);
+  const Preintegration pre = preintegrate(recorded, {}, kBias, scale);
+  // Rounding of numbers below 10.
+  EXPECT_LT((pre.dp - truth.dp).norm(), 1e-13);
+  EXPECT_LT((pre.dv - truth.dv).norm(), 1e-13);
+  EXPECT_LT((pre.idp - truth.idp).norm(), 1e-13);
+  EXPECT_LT((pre.iidp - truth.iidp).norm(), 1e-13);
+  EXPECT_LT(so3::log(pre.dq.conjugate() * truth.dq).norm(), 1e-13);
+  // Without it 1000 ppm of 9.8 m/s and of 1.2 rad/s, the latter acting on the half of 9.8 m/s.
+  const Preintegration without = preintegrate(recorded, {}, kBias);
+  EXPECT_GT((without.dv - truth.dv).norm(), 5e-3);
+  EXPECT_GT(so3::log(without.dq.conjugate() * truth.dq).norm(), 2e-4);
+}
+
+TEST(Preintegrator, AScaleOfZeroChangesNothingAndNoneHasNoJacobians) {
+  const std::vector<ImuIncrement> increments =
+      ClosedFormMotion(wuhan_earth()).increments(3, 4, 200);
+  const Preintegration none = preintegrate(increments, loud_noise(), kBias);
+  const Preintegration zero = preintegrate(increments, loud_noise(), kBias, ImuScale{});
+  EXPECT_FALSE(none.scale);
+  EXPECT_TRUE(zero.scale);
+  EXPECT_EQ(zero.dp, none.dp);
+  EXPECT_EQ(zero.dq.coeffs(), none.dq.coeffs());
+  EXPECT_EQ(zero.by_gyro_bias.dq, none.by_gyro_bias.dq);
+  EXPECT_EQ(zero.covariance, none.covariance);
+  for (const DeltaJacobian& J : {none.by_gyro_scale, none.by_accel_scale})
+    EXPECT_TRUE(J.dp.isZero(0) && J.dv.isZero(0) && J.dq.isZero(0));
 }
 
 TEST(Preintegrator, SplittingAnIncrementChangesLittle) {
@@ -192,9 +275,9 @@ TEST(Preintegrator, ExtraNoiseOfABridgeAddsToTheSensors) {
   noise.accel_noise_density = 0.3;
   Preintegrator integrator(noise, {}, 0);
   integrator.add(gap);
-  const Matrix15d P = integrator.result().covariance;
-  EXPECT_NEAR(P(kAttitude, kAttitude), 0.05 * 0.05 * 0.5, 1e-15);
-  EXPECT_NEAR(P(kVelocity, kVelocity), 0.5 * 0.5 * 0.5, 1e-15);
+  const NodeMatrix P = integrator.result().covariance;
+  EXPECT_NEAR(part(P, attitude, attitude)(0, 0), 0.05 * 0.05 * 0.5, 1e-15);
+  EXPECT_NEAR(part(P, velocity, velocity)(0, 0), 0.5 * 0.5 * 0.5, 1e-15);
 }
 
 TEST(Preintegrator, RefusesHolesAndEmptyIncrements) {

@@ -20,7 +20,6 @@ class RawlogOptions : public Configurable {
   std::string gnss_label;                     ///< of the receiver; empty: the first with a position
   std::string reference_label = "REFERENCE";  ///< of the reference trajectory
   double reorder_s = 2.0;                     ///< records may come this late [s]
-  bool gnss_velocity = true;                  ///< read velocities of the receiver
 
   void fields(ConfigFields& f) override;
 };

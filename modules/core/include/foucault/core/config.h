@@ -54,6 +54,8 @@ class ConfigFields {
   /// A free map of names to texts (e.g. the columns of a CSV mapping).
   virtual void text_map(std::string_view key, std::map<std::string, std::string>& value,
                         std::string_view help) = 0;
+  /// A key that there was once, and the one to be set today.
+  virtual void replaced(std::string_view /*key*/, std::string_view /*by*/) {}
   virtual void section(std::string_view key, Configurable& inner, std::string_view help) = 0;
 };
 

@@ -2,53 +2,19 @@
 
 #include <Eigen/Core>
 
-#include "foucault/state/blocks.h"
 #include "foucault/inertial/imu_noise.h"
 #include "foucault/inertial/strapdown.h"
+#include "foucault/state/layout.h"
 
-/// Error dynamics of the strapdown mechanization: error state, transition, process noise.
-/// The error is true minus estimated, in the order of error_state, [dp dv dtheta dbg dba], and
-/// with scale factors [... dsg dsa]. dp is metres north, east, down of the place, dv the difference
-/// of the NED components, dtheta a right perturbation in b.
+/// Error dynamics of the strapdown mechanization: transition and process noise of a NavState's
+/// error (state/blocks.h).
 /// Sources: Shin (2005), ch. 3; Groves (2013), 14.2.4; here with the attitude error in b.
 namespace foucault::ekf {
 
-constexpr int kGyroScale = error_state::kSize;  ///< dsg, a pure number
-constexpr int kAccelScale = kGyroScale + 3;     ///< dsa
-constexpr int kSizeWithScale = kAccelScale + 3;
-
-/// 15 or 21 rows, on the stack.
-using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor,
-                             kSizeWithScale, kSizeWithScale>;
-using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kSizeWithScale, 1>;
-
-/// What the filter estimates. measured = (1 + scale) * true + bias.
-struct FullState {
-  StrapdownState motion;
-  ImuBias bias;
-  Eigen::Vector3d gyro_scale = Eigen::Vector3d::Zero();
-  Eigen::Vector3d accel_scale = Eigen::Vector3d::Zero();
-};
-
-/// The state with an error put right; 15 or 21 rows.
-FullState corrected(const FullState& state, const Vector& error);
-
-/// The error of which `to` is the corrected `from`: corrected(from, difference(from, to, n)) == to.
-/// The position is measured with the radii of `from`.
-Vector difference(const FullState& from, const FullState& to, int size);
-
-/// The increment that error-free sensors would have given, as far as the state knows.
-ImuIncrement compensated(const ImuIncrement& increment, const FullState& state);
-
-/// Process noise of the state, Gauss-Markov processes included.
+/// Process noise of the state: of the IMU and its biases, and of the slow blocks.
 struct ProcessNoise {
   ImuNoise imu;
-  bool with_scale = false;
-  double gyro_scale_sigma = 0;  ///< steady state
-  double accel_scale_sigma = 0;
-  double scale_tau = 3600;  ///< [s]
-
-  int size() const { return with_scale ? kSizeWithScale : error_state::kSize; }
+  Layout layout;
 };
 
 /// What the error dynamics need of the motion over one or several increments: integrals in n of
@@ -69,17 +35,17 @@ struct MotionIntegrals {
 
 /// error(end) = phi * error(begin) + w, var w = q.
 struct Transition {
-  Matrix phi;
-  Matrix q;
+  StateMatrix phi;
+  StateMatrix q;
 };
 
 /// Transition over the integrals' interval, from `begin` to `end`. Series to the third order in dt
-/// of the mean dynamics; biases and scale factors as Gauss-Markov processes in closed form;
+/// of the mean dynamics; biases and slow blocks as Gauss-Markov processes in closed form;
 /// q by Simpson's rule, exact for white noise integrated into velocity and position.
-Transition transition(const MotionIntegrals& integrals, const StrapdownState& begin,
-                      const StrapdownState& end, const ProcessNoise& noise);
+Transition transition(const MotionIntegrals& integrals, const NavState& begin, const NavState& end,
+                      const ProcessNoise& noise);
 
 /// phi P phi' + q, by the rows of the motion and the diagonal that the rest of phi is.
-Matrix propagated(const Matrix& covariance, const Transition& transition);
+StateMatrix propagated(const StateMatrix& covariance, const Transition& transition);
 
 }  // namespace foucault::ekf

@@ -7,9 +7,9 @@
 
 namespace foucault {
 
-/// Method `rts`: the EKF forward, then backward. Memory grows by 6 kB a node.
-std::unique_ptr<Estimator> make_rts_smoother(const ImuNoise& imu, const EkfOptions& options,
-                                             Aligner aligner,
+/// Method `rts`: the EKF forward, then backward. Memory grows by 5 kB a node.
+std::unique_ptr<Estimator> make_rts_smoother(const ImuNoise& imu, const Layout& layout,
+                                             const EkfOptions& options, Aligner aligner,
                                              const NavigationRunOptions& run_options, Sink& sink);
 
 }  // namespace foucault

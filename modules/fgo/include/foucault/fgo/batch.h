@@ -6,8 +6,8 @@
 
 #include "foucault/core/config.h"
 #include "foucault/fgo/batch_solver.h"
+#include "foucault/inertial/recent_rates.h"
 #include "foucault/inertial/smoother.h"
-#include "foucault/measurement/gnss_position.h"
 
 /// Smoothing by one optimization over a whole log: the cost (48) with every node in the window.
 namespace foucault {
@@ -34,8 +34,10 @@ class BatchRecorder final : public Navigator, public Recording {
 
   void start(const Epoch& initial) override;
   void propagate(const ImuIncrement& increment) override;
-  Innovation innovation(const GnssFix& fix) const override { return forward_->innovation(fix); }
-  void update(const GnssFix& fix) override;
+  Innovation innovation(const Observation& observation) const override {
+    return forward_->innovation(observation);
+  }
+  void update(const ObservationPtr& observation) override;
   void loosen(const NodeMatrix& added) override;
   std::unique_ptr<Navigator> ahead(double scale) const override { return forward_->ahead(scale); }
   void hold() override;
@@ -47,13 +49,12 @@ class BatchRecorder final : public Navigator, public Recording {
   std::vector<SmoothedEpoch> smoothed() override;
 
  private:
-  /// What the forward run had at a node.
+  /// What the forward run had at a node, without slow blocks.
   struct Passage {
-    StrapdownState predicted, filtered;
-    ImuBias predicted_bias, filtered_bias;
-    Eigen::Vector3d p_b_a = Eigen::Vector3d::Zero();
+    NavState predicted, filtered;
   };
 
+  SquareRootPrior prior_of(const Epoch& epoch) const;
   void begin_interval(const Epoch& now);
   void close_interval();
   void add_node(const Epoch& now);
@@ -65,9 +66,10 @@ class BatchRecorder final : public Navigator, public Recording {
   ImuNoise noise_;
 
   std::deque<BatchChain> chains_;            ///< one a start
-  std::vector<Passage> passages_;            ///< one a node, all chains
+  std::deque<Passage> passages_;             ///< one a node, all chains
   std::optional<Preintegrator> integrator_;  ///< from the newest node on
   ImuInterval open_;
+  RecentRates rates_{kLeverArmRateMemory};
   EarthModel earth_;
 };
 

@@ -7,6 +7,7 @@
 #include "foucault/fgo/imu_interval.h"
 #include "foucault/fgo/observation_factor.h"
 #include "foucault/fgo/prior_factor.h"
+#include "foucault/state/epoch.h"
 
 /// The cost (48) over a whole log, minimized by eliminating its chain.
 namespace foucault {
@@ -23,23 +24,11 @@ struct BatchChain {
   std::deque<ImuInterval> intervals;
 };
 
-/// Covariance of each node and the border, that of the border once: 1 kB a node without one.
-class NodeCovariances {
- public:
-  NodeCovariances(std::size_t nodes, Eigen::Index slow);
-  void set(std::size_t k, const StateMatrix& P);
-  StateMatrix operator[](std::size_t k) const;
-
- private:
-  std::size_t stride_;
-  SlowMatrix border_;
-  std::vector<double> numbers_;
-};
-
 struct BatchSolution {
   std::vector<NodeState> x;
   SlowVector slow;
-  NodeCovariances covariance_w;  ///< from everything
+  /// Of each node and the border, from everything.
+  std::vector<PackedSymmetric> covariance_w;
 };
 
 /// Minimizes the cost by Gauss and Newton from the nodes' first estimates, by damped steps where a

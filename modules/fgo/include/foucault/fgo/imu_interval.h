@@ -11,7 +11,7 @@ namespace foucault {
 
 /// Between a node and the next: the factor, and what it was integrated from.
 struct ImuInterval {
-  std::vector<ImuIncrement> increments;  ///< kept to integrate again when the bias moves
+  std::vector<ImuIncrement> increments;  ///< kept to integrate again
   std::optional<ImuIncrement> before;    ///< the increment before the first
   std::unique_ptr<PreintegrationFactor> factor;
   std::unique_ptr<NodeMatrix> loosened;  ///< covariance beyond the IMU's, of the factor's residual
@@ -20,22 +20,20 @@ struct ImuInterval {
 /// What the model takes from an integrator: in `full` the biases decay.
 Preintegration measured(const Preintegrator& integrator, PreintegrationModel model);
 
-/// Mean angular rate as the gyroscopes measured it last [rad/s]; zero before they did.
-Eigen::Vector3d newest_rate(const Preintegrator& integrator);
-
 /// A change of the gyro bias turns an interval by |dbg| T. Beyond this angle the second order of
 /// (46), g (|dbg| T)^2 T / 6, nears 1e-6 m/s, and the interval is to be integrated anew.
 constexpr double kReintegrationAngle = 1e-3;  // [rad]
 
-bool bias_moved(const PreintegratedMotion& motion, const ImuBias& bias);
+/// Scale factors of the gyroscopes likewise.
+bool has_turned(const ImuInterval& interval, const ImuBias& bias, const SlowVector& slow);
 
 /// The end of the interval from `begin` to `end` may have been off by more than the IMU's noise:
 /// `added` comes to the covariance of its error.
 void loosen(ImuInterval& interval, const NodeState& begin, const NodeState& end,
             const NodeMatrix& added, const Layout& layout);
 
-/// Integrates the interval again, at `bias`; there is a new factor then.
-void reintegrate(ImuInterval& interval, const ImuBias& bias, const ImuNoise& noise,
-                 const GraphContext& context);
+/// Integrates the interval again, at these values; there is a new factor then.
+void reintegrate(ImuInterval& interval, const ImuBias& bias, const SlowVector& slow,
+                 const ImuNoise& noise, const GraphContext& context);
 
 }  // namespace foucault

@@ -1,9 +1,6 @@
 #pragma once
 
-// Until Navigator gives the Innovation of kalman.h, its own goes by that name.
-#define Innovation KalmanInnovation
 #include "foucault/state/kalman.h"
-#undef Innovation
 
 namespace foucault {
 

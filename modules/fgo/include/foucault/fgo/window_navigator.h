@@ -11,7 +11,7 @@
 #include "foucault/fgo/imu_interval.h"
 #include "foucault/fgo/observation_factor.h"
 #include "foucault/inertial/navigator.h"
-#include "foucault/measurement/gnss_position.h"
+#include "foucault/inertial/recent_rates.h"
 
 namespace foucault {
 
@@ -38,9 +38,8 @@ class WindowNavigator final : public Navigator {
 
   void start(const Epoch& initial) override;
   void propagate(const ImuIncrement& increment) override;
-  Innovation innovation(const GnssFix& fix) const override;
-  void update(const GnssFix& fix) override { update(gnss_position(fix)); }
-  void update(const ObservationPtr& observation);
+  Innovation innovation(const Observation& observation) const override;
+  void update(const ObservationPtr& observation) override;
   /// The window ends here: what it knows becomes the prior of a node at the current time.
   void loosen(const NodeMatrix& added) override;
   std::unique_ptr<Navigator> ahead(double scale) const override;
@@ -48,9 +47,6 @@ class WindowNavigator final : public Navigator {
   Epoch epoch() const override;
 
   std::size_t nodes() const { return nodes_.size(); }
-  const SlowVector& slow() const { return slow_; }
-  /// Of the newest node in w and the slow blocks.
-  const StateMatrix& covariance_w() const { return covariance_; }
 
  private:
   /// What the past and the node's own observations say of it and the border, as a quadratic form at
@@ -102,7 +98,8 @@ class WindowNavigator final : public Navigator {
   SquareRootPrior prior_;                    ///< on the first node, without its observations
   std::optional<Preintegrator> integrator_;  ///< from the newest node on
   ImuInterval open_;                         ///< its increments
-  StateMatrix covariance_;                   ///< of the newest node and the border
+  RecentRates rates_{kLeverArmRateMemory};
+  StateMatrix covariance_;  ///< of the newest node and the border
 };
 
 }  // namespace foucault

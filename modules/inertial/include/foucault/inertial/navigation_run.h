@@ -12,6 +12,7 @@
 #include "foucault/state/interfaces.h"
 #include "foucault/inertial/alignment.h"
 #include "foucault/inertial/navigator.h"
+#include "foucault/inertial/recent_rates.h"
 
 namespace foucault {
 
@@ -39,6 +40,19 @@ class GapOptions : public Configurable {
   void fields(ConfigFields& f) override;
 };
 
+/// Section `aids` of the configuration: what is measured beside positions.
+class AidOptions : public Configurable {
+ public:
+  std::string mode = "auto";          ///< auto: as below | none: positions alone
+  std::string gnss_velocity = "off";  ///< on | off
+  std::optional<double> gnss_velocity_sigma_m_s;
+
+  void fields(ConfigFields& f) override;
+  /// Takes off a fix what is not to be used of it.
+  void apply_to(GnssFix& fix) const;
+  bool uses_gnss_velocity() const { return mode != "none" && gnss_velocity == "on"; }
+};
+
 class FixDoubt;
 class FixGuard;
 class FixJudge;
@@ -54,6 +68,7 @@ enum class EpochRate { epochs, imu };
 struct NavigationRunOptions {
   GnssOptions gnss;
   GapOptions gaps;
+  AidOptions aids;
   double node_interval_s = 1;  ///< longest time between nodes, see Navigator::hold()
   EpochRate rate = EpochRate::epochs;
 };
@@ -71,6 +86,8 @@ struct NavigationRunOptions {
 ///   the first after an outage, what follows is held back until it shows whether the fixes or the
 ///   state are wrong (src/fix_doubt.h), 90 s at most; epochs and fixes are given out that much
 ///   later, as if it had been known at once. After a hole the gate is open for ten seconds.
+/// - Velocities of fixes that were used are gated in the same way, by themselves, if the aids have
+///   them.
 /// - Before the alignment, fixes that no vehicle can reach from their neighbours are left out.
 /// - Positions given again and again under new stamps count once (out_of_order).
 /// - Fixes that are no position, or that no vehicle reaches from the others, are left out, counted
@@ -99,14 +116,6 @@ class NavigationRun : public Estimator {
 
  private:
   using Event = std::variant<GnssFix, EpochRequest>;
-
-  /// Means of the rates before now, for bridging a hole.
-  struct RecentRates {
-    Eigen::Vector3d gyro_b = Eigen::Vector3d::Zero();   ///< [rad/s]
-    Eigen::Vector3d accel_b = Eigen::Vector3d::Zero();  ///< [m/s^2]
-    double memory = 0;                                  ///< seconds that the means rest on
-    void add(const ImuIncrement& increment);
-  };
 
   /// Length of increments, weighed by their share of the time, so that slips of stamps do not
   /// count.
@@ -167,10 +176,12 @@ class NavigationRun : public Estimator {
   bool returns_after_outage(const GnssFix& fix) const;
   void doubt(const GnssFix& fix, const GnssFix& trusted);
   bool show_doubt(const Measurement& measurement);
+  void doubt_state(int64_t t_ns);
   void look_beyond_doubt(const Measurement& measurement);
   void resolve_doubt();
   FixVerdict carry_out(const FixDecision& decision, const GnssFix& fix, FixResult& result);
   void use(const GnssFix& fix, FixResult& result);
+  void use_velocity(const GnssFix& fix);
   void predict_ahead(const GnssFix& fix);
   void remember_fix_time();
   void hold();
@@ -199,6 +210,7 @@ class NavigationRun : public Estimator {
   std::unique_ptr<Plausibility> plausibility_;
   std::unique_ptr<FixScreen> screen_;
   std::unique_ptr<FixJudge> judge_;
+  std::unique_ptr<FixJudge> velocity_judge_;
   std::unique_ptr<FixDoubt> doubt_;
   std::optional<GnssFix> doubted_fix_;
   std::deque<Measurement> beyond_doubt_;         ///< what came after it
@@ -208,7 +220,7 @@ class NavigationRun : public Estimator {
   std::optional<GnssFix> last_fix_seen_;
   std::optional<Epoch> before_hole_;  ///< the last state, while aligning anew
   UsualInterval usual_interval_;
-  RecentRates recent_;
+  RecentRates recent_;                  ///< before now, for bridging a hole
   std::deque<Measurement> held_;
   std::multimap<int64_t, Event> pending_;  ///< by stamp
   std::unique_ptr<ImuHole> hole_;          ///< met but not yet bridged

@@ -4,14 +4,10 @@
 #include <memory>
 
 #include "foucault/core/measurement.h"
-#include "foucault/state/result.h"
+#include "foucault/measurement/observation.h"
+#include "foucault/state/epoch.h"
 
 namespace foucault {
-
-struct Innovation {
-  Eigen::Vector3d value_n = Eigen::Vector3d::Zero();         ///< fix minus prediction, NED [m]
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();  ///< of value_n, fix noise included
-};
 
 /// What an integration filter does once it has an initial state. The driver (NavigationRun) deals
 /// with alignment, splitting, gaps, gating and output, the same for every method.
@@ -21,21 +17,22 @@ class Navigator {
  public:
   virtual ~Navigator() = default;
 
-  /// (Re)starts from a state with covariance, at initial.t_ns.
+  /// (Re)starts from a state with covariance, at initial.t_ns. Slow blocks that it has keep their
+  /// values and correlations; those that it lacks start from their prior.
   virtual void start(const Epoch& initial) = 0;
 
   virtual void propagate(const ImuIncrement& increment) = 0;
 
-  /// Prediction error of a fix at the current time; changes nothing.
-  virtual Innovation innovation(const GnssFix& fix) const = 0;
+  /// Prediction error of a measurement at the current time; changes nothing.
+  virtual Innovation innovation(const Observation& observation) const = 0;
 
-  /// Uses a fix at the current time.
-  virtual void update(const GnssFix& fix) = 0;
+  /// Uses a measurement at the current time.
+  virtual void update(const ObservationPtr& observation) = 0;
 
-  /// The state may be worse than its covariance says: `added` comes to it at the current time, in
-  /// the order of error_state, position and velocity in the local NED. Symmetric, positive
-  /// semidefinite. What is estimated beside these fifteen keeps its values and correlations.
-  virtual void loosen(const Matrix15d& added) = 0;
+  /// The state may be worse than its covariance says: `added` comes to that of the node's blocks at
+  /// the current time, position and velocity in the local NED. Symmetric, positive semidefinite.
+  /// Slow blocks keep their values and correlations.
+  virtual void loosen(const NodeMatrix& added) = 0;
 
   /// One that drives on from the present state by the same method, for trying out what follows,
   /// with the sigmas of all that is estimated `scale` times what they are; correlations stay. This

@@ -1,32 +1,34 @@
 #pragma once
 
+#include <deque>
 #include <memory>
 #include <variant>
 #include <vector>
 
 #include "foucault/state/interfaces.h"
 #include "foucault/inertial/navigation_run.h"
-#include "foucault/inertial/strapdown.h"
 
 /// What smoothers share: a forward run that leaves nodes, and afterwards every epoch from all
 /// fixes.
 namespace foucault {
 
-/// The solution at a node from all fixes.
+/// The solution at a node from everything measured.
 struct SmoothedEpoch {
-  Epoch epoch;
-  /// The errors it found, in the order of error_state: in the forward run's state before the node's
-  /// fix, and after it; the same where there is none.
-  Vector15d before = Vector15d::Zero();
-  Vector15d after = Vector15d::Zero();
-  Eigen::Vector3d p_b_a = Eigen::Vector3d::Zero();  ///< lever arm of the node's last fix [m]
+  NavState state;
+  PackedSymmetric covariance;
+  /// The errors it found: in the forward run's state before the node's measurements, and after
+  /// them; the same where there are none.
+  NodeVector before = NodeVector::Zero();
+  NodeVector after = NodeVector::Zero();
+
+  Epoch epoch() const { return {state, covariance.full()}; }
 };
 
 /// The smoothed solution between two neighbouring nodes, where the forward run had `forward`: the
 /// errors found after `begin` and before `end` are interpolated, that of the position to the third
 /// order with those of the velocity. With nodes a second apart it differs from that of a node there
 /// by millimetres after an outage of 60 s. The covariance is interpolated.
-Epoch between(const SmoothedEpoch& begin, const SmoothedEpoch& end, const StrapdownState& forward);
+Epoch between(const SmoothedEpoch& begin, const SmoothedEpoch& end, const NavState& forward);
 
 /// A Navigator that leaves nodes on its way, for smoothing once the way is over.
 class Recording {
@@ -64,6 +66,7 @@ class Smoother : public Estimator {
         : recording_(recording), rate_(rate), sink_(sink) {}
     void epoch(const Epoch& epoch) override;
     void fix(const FixResult& result) override;
+    void observation(const ObservationResult& result) override { kept_.emplace_back(result); }
     void notice(const Notice& notice) override;
     bool wants_predictions() const override { return sink_.wants_predictions(); }
     /// Those of the forward run; they do not wait.
@@ -77,7 +80,7 @@ class Smoother : public Estimator {
     };
     struct BetweenEpoch {
       std::size_t node;  ///< the one before
-      StrapdownState forward;
+      NavState forward;
     };
     struct NodeFix {
       std::size_t node;
@@ -87,7 +90,7 @@ class Smoother : public Estimator {
     Recording& recording_;
     EpochRate rate_;
     Sink& sink_;
-    std::vector<std::variant<NodeEpoch, BetweenEpoch, NodeFix, FixResult, Notice>> kept_;
+    std::deque<std::variant<NodeEpoch, BetweenEpoch, NodeFix, FixResult, ObservationResult, Notice>> kept_;
   };
 
   Keeper keeper_;

@@ -5,11 +5,16 @@
 
 #include "foucault/preintegration/earth.h"
 #include "foucault/preintegration/preintegrator.h"
+#include "foucault/state/layout.h"
 #include "foucault/state/nav_state.h"
 
 namespace foucault {
 
-/// Residual (49) of an interval from x0 to x1 and its Jacobians by the tangents of both.
+/// Rows of a node by the axes of the IMU.
+using NodeByAxis = Eigen::Matrix<double, kNodeSize, 3>;
+
+/// Residual (49) of an interval from x0 to x1 and its Jacobians by the tangents of both, and by the
+/// scale factors.
 /// Rows: position [m], velocity [m/s], attitude [rad] in b_i(k-1) resp. b(t_k), bias changes.
 ///
 /// Derivation. On the turning Earth p'' = C f + g(p) - 2 w x p', with g = g0 + G (p - p0). Seen
@@ -28,24 +33,43 @@ namespace foucault {
 /// of G' with w and the change of G along the way: below 3 nm for 1 s at 250 m/s, 4 cm for 60 s.
 /// All rows are true minus measured, as the errors of the preintegration are: (49) as printed has
 /// the opposite sign in its attitude row, which would turn its correlations with the others.
-/// The Jacobians are exact derivatives of these expressions; s is not corrected for the biases.
+/// dp, dv and dq are those at the biases b0 and at the scale factors, (46): with d the biases and
+/// scale factors less those of the preintegration, J its Jacobians,
+///   dp = pre.dp + sum J.dp d,   dv = pre.dv + sum J.dv d,   dq = pre.dq Exp(sum J.dq d)
+/// The Jacobians are exact derivatives of these expressions; s is not corrected so.
 struct MotionResidual {
-  Vector15d r;
-  Matrix15d J_x0;
-  Matrix15d J_x1;
+  NodeVector r;
+  NodeMatrix J_x0;
+  NodeMatrix J_x1;
+  NodeByAxis J_gyro_scale = NodeByAxis::Zero();  ///< both zero if the preintegration has no scale
+  NodeByAxis J_accel_scale = NodeByAxis::Zero();
 };
+/// Here and below: `scale` counts if the preintegration has one.
 MotionResidual motion_residual(const NodeState& x0, const NodeState& x1, const Preintegration& pre,
-                               const EarthModel& earth);
+                               const EarthModel& earth, const ImuScale& scale = {});
 
 /// The residual alone.
-Vector15d motion_residual_value(const NodeState& x0, const NodeState& x1, const Preintegration& pre,
-                                const EarthModel& earth);
+NodeVector motion_residual_value(const NodeState& x0, const NodeState& x1,
+                                 const Preintegration& pre, const EarthModel& earth,
+                                 const ImuScale& scale = {});
+
+/// Jacobian of the residual by the slow blocks; only the IMU's scale factors are in it.
+NodeBySlow slow_jacobian(const MotionResidual& m, const Layout& layout);
 
 /// The x1 that makes the residual zero.
-NodeState predict(const NodeState& x0, const Preintegration& pre, const EarthModel& earth);
+NodeState predict(const NodeState& x0, const Preintegration& pre, const EarthModel& earth,
+                  const ImuScale& scale = {});
 
-/// Covariance of predict(x0) for a covariance of x0, both in the tangent order of error_state.
-Matrix15d predict_covariance(const NodeState& x0, const NodeState& x1, const Preintegration& pre,
-                             const EarthModel& earth, const Matrix15d& covariance_x0);
+/// Covariance of predict(x0) for a covariance of x0.
+NodeMatrix predict_covariance(const NodeState& x0, const NodeState& x1, const Preintegration& pre,
+                              const EarthModel& earth, const NodeMatrix& covariance_x0);
+
+/// The same with slow blocks of the values `slow`. They act on the interval as they are at its
+/// begin, d1 = F d0 + S d_slow, and decay over it as their Gauss-Markov processes do.
+/// Throws std::invalid_argument if scale factors are estimated of which the preintegration has
+/// none.
+StateMatrix predict_covariance(const NodeState& x0, const NodeState& x1, const Preintegration& pre,
+                               const EarthModel& earth, const StateMatrix& covariance_x0,
+                               const Layout& layout, const SlowVector& slow);
 
 }  // namespace foucault

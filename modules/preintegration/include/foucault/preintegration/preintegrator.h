@@ -5,10 +5,18 @@
 #include <optional>
 
 #include "foucault/core/measurement.h"
-#include "foucault/state/blocks.h"
 #include "foucault/inertial/imu_noise.h"
+#include "foucault/state/blocks.h"
 
 namespace foucault {
+
+/// How the deltas change by one block, to first order, (44): at block + d they are dp + J.dp d,
+/// dv + J.dv d and dq * exp(J.dq d).
+struct DeltaJacobian {
+  Eigen::Matrix3d dp = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d dv = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d dq = Eigen::Matrix3d::Zero();
+};
 
 /// What an IMU measured between two stamps, free of the state: paper III.C-III.E.
 ///
@@ -30,6 +38,7 @@ struct Preintegration {
   Eigen::Vector3d idp = Eigen::Vector3d::Zero();           ///< integral of dp [m s]
   Eigen::Vector3d iidp = Eigen::Vector3d::Zero();          ///< integral of idp [m s^2]
   ImuBias bias;                                            ///< at which it was integrated; (37)
+  std::optional<ImuScale> scale;  ///< at which it was integrated; none: taken as right
   /// Share that is left at t_end of what the true bias at t_begin has beyond `bias`. 1 in (49); the
   /// processes of MarkovBias make it exp(-T / tau). It is the deviation from the estimate that
   /// decays, as in a Kalman filter, and not the estimate: that holds the turn-on value, which
@@ -37,30 +46,36 @@ struct Preintegration {
   double gyro_bias_decay = 1;
   double accel_bias_decay = 1;
 
-  /// Jacobians by the biases, (44): dp(bias + d) = dp + J_dp_bg d_g + J_dp_ba d_a, and so on;
-  /// dq(bias + d) = dq * exp(J_dq_bg d_g).
-  Eigen::Matrix3d J_dp_bg = Eigen::Matrix3d::Zero();
-  Eigen::Matrix3d J_dp_ba = Eigen::Matrix3d::Zero();
-  Eigen::Matrix3d J_dv_bg = Eigen::Matrix3d::Zero();
-  Eigen::Matrix3d J_dv_ba = Eigen::Matrix3d::Zero();
-  Eigen::Matrix3d J_dq_bg = Eigen::Matrix3d::Zero();
+  DeltaJacobian by_gyro_bias;
+  DeltaJacobian by_accel_bias;  ///< dq does not change
+  /// Both zero without `scale`.
+  DeltaJacobian by_gyro_scale;
+  DeltaJacobian by_accel_scale;  ///< dq does not change
 
-  /// Covariance of the errors, (43); order of error_state, bias rows: change over the interval.
-  Matrix15d covariance = Matrix15d::Zero();
+  /// Covariance of the errors, (43); blocks of a node, bias rows: change over the interval.
+  NodeMatrix covariance = NodeMatrix::Zero();
 };
 
 /// Accumulates increments into a Preintegration, one at a time.
 ///
 /// The attitude error is kept in b_i, eps = C e_theta, in which (35) becomes
 ///     eps' = -C (bg + n_g),   v' = -[a x] eps - C (ba + n_a),   p' = v:
-/// only the skew of the velocity increment and C itself remain of the 15x15 products.
+/// only the skew of the velocity increment and C itself remain of the products of whole matrices.
 /// Noise by the trapezoid rule, as (42); biases are the processes of MarkovBias, and a constant one
 /// wanders by 1e-5 of its sigma in an hour.
+///
+/// Scale factors: the true increment is (measured - bias dt) / (1 + scale), which a scale changes
+/// as a bias of rate / (1 + scale) does. So their Jacobians take the steps of those by the biases,
+/// with C diag(true increment) in the place of C dt; and the common 1 / (1 + scale), constant over
+/// the interval, is a factor of the columns that result() applies to both. The covariance leaves it
+/// out: noise is not known to 1000 ppm.
 class Preintegrator {
  public:
-  /// `previous`: the increment before the first, for coning and sculling.
+  /// `previous`: the increment before the first, for coning and sculling. `scale`: at which to
+  /// integrate, and whether there are to be Jacobians by it.
   Preintegrator(const ImuNoise& noise, const ImuBias& bias, int64_t t_begin_ns,
-                const std::optional<ImuIncrement>& previous = std::nullopt);
+                const std::optional<ImuIncrement>& previous = std::nullopt,
+                const std::optional<ImuScale>& scale = std::nullopt);
 
   /// Precondition: begins where the last one ended.
   /// Throws std::invalid_argument if it does not, or if it is empty.
@@ -77,15 +92,25 @@ class Preintegrator {
   const std::optional<ImuIncrement>& previous() const { return previous_; }
 
  private:
-  void propagate_errors(const ImuIncrement& increment, const Eigen::Matrix3d& C,
+  /// Rotation [rad] and velocity [m/s] that were measured.
+  struct Motion {
+    Eigen::Vector3d dtheta, dvel;
+  };
+  /// Without bias and scale error.
+  Motion corrected(const ImuIncrement& increment) const;
+
+  void propagate_errors(const ImuIncrement& increment, const Motion& motion,
                         const Eigen::Matrix3d& C_next, const Eigen::Vector3d& y);
-  void propagate_jacobians(const Eigen::Matrix3d& C, const Eigen::Matrix3d& D,
-                           const Eigen::Vector3d& y, double dt);
-  void propagate_covariance(const ImuIncrement& increment, const Eigen::Matrix3d& C,
-                            const Eigen::Matrix3d& D, const Eigen::Vector3d& y, double dt);
+  void propagate_jacobians(const Motion& motion, const Eigen::Matrix3d& D, const Eigen::Vector3d& y,
+                           double dt);
+  void propagate_covariance(const ImuIncrement& increment, const Eigen::Matrix3d& D,
+                            const Eigen::Vector3d& y, double dt);
 
   void add_noise(double h, double q_g, double q_a);
   void set_bias_decay(double dt);
+
+  void put_jacobians(Preintegration& out) const;
+  void put_covariance(NodeMatrix& S) const;
 
   /// Blocks of the covariance that are not zero; e = eps, g = gyro bias, a = accel bias.
   struct Blocks {
@@ -97,7 +122,8 @@ class Preintegrator {
   ImuNoise noise_;
   double gyro_bias_power_, accel_bias_power_;
   std::optional<ImuIncrement> previous_;
-  Preintegration m_;  ///< its J_dq_bg holds d eps / d bg until result()
+  Preintegration m_;  ///< until result() its Jacobians have eps for dq, and no gain in the columns
+  ImuScale gain_{Eigen::Vector3d::Ones(), Eigen::Vector3d::Ones()};  ///< 1 / (1 + scale)
   Eigen::Matrix3d C_ = Eigen::Matrix3d::Identity();
   Blocks cov_;
   double bias_decay_dt_ = -1;  ///< sample length for which the decays were computed

@@ -32,6 +32,8 @@ class Sink {
   virtual ~Sink() = default;
   virtual void epoch(const Epoch&) {}
   virtual void fix(const FixResult&) {}
+  /// Of all measurements but positions.
+  virtual void observation(const ObservationResult&) {}
   virtual void notice(const Notice&) {}
   /// Predictions cost time and come only if they are wanted, from the beginning on.
   virtual bool wants_predictions() const { return false; }

@@ -5,24 +5,13 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "foucault/core/measurement.h"
-#include "foucault/state/blocks.h"
+#include "foucault/state/epoch.h"
 
 /// What estimators give out, as plain values.
 namespace foucault {
-
-/// A navigation solution of the IMU centre at one stamp, in the local North-East-Down of that
-/// place.
-struct Epoch {
-  int64_t t_ns = 0;
-  Geodetic position;
-  Eigen::Vector3d velocity_n = Eigen::Vector3d::Zero();  ///< [m/s]
-  Eigen::Quaterniond q_n_b = Eigen::Quaterniond::Identity();
-  ImuBias bias;
-  /// Error covariance, order of error_state: dp and dv in local NED, dtheta in b.
-  Matrix15d covariance = Matrix15d::Zero();
-};
 
 /// corrected: used less an error that it shares with its neighbours.
 enum class FixVerdict { used, bad_sigma, gated, low_quality, out_of_order, corrected };
@@ -33,9 +22,19 @@ struct FixResult {
   FixVerdict verdict = FixVerdict::used;
   FixQuality quality = FixQuality::unknown;
   Geodetic antenna;
+  Eigen::Vector3d p_b_a = Eigen::Vector3d::Zero();  ///< lever arm, IMU to antenna, in b [m]
   Eigen::Vector3d innovation_n = Eigen::Vector3d::Zero();           ///< north, east, down [m]
   Eigen::Matrix3d innovation_covariance = Eigen::Matrix3d::Zero();  ///< [m^2], of the innovation
   Eigen::Vector3d postfit_n = Eigen::Vector3d::Zero();  ///< fix minus estimate after use [m]
+};
+
+/// What became of another measurement.
+struct ObservationResult {
+  int64_t t_ns = 0;
+  std::string_view name;  ///< of its kind, see Observation
+  int dimension = 0;
+  double normalized_square = 0;  ///< innovation squared by its covariance
+  bool used = false;
 };
 
 /// A used fix against its prediction from a state some time before, without the fixes in between.

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string>
+
+#include "foucault/core/config.h"
+#include "foucault/state/layout.h"
+
+namespace foucault {
+
+/// Section `calibrate` of the configuration: which slow blocks are estimated.
+class CalibrateOptions : public Configurable {
+ public:
+  std::string mode = "auto";         ///< auto: as below | none: nothing beside the biases
+  std::string gyro_scale = "off";    ///< on | off
+  std::string accel_scale = "off";   ///< on | off
+  double gyro_scale_sigma_ppm = 1000;
+  double accel_scale_sigma_ppm = 1000;
+  /// Scale factors of a recording are those of the sensor and its temperature. Shorter ones leave
+  /// the vertical free: with an hour it drifts 2.5 times as far in 60 s.
+  double scale_tau_s = 864000;
+
+  void fields(ConfigFields& f) override;
+  Layout layout() const;
+};
+
+}  // namespace foucault
