@@ -426,7 +426,7 @@ TEST(Ekf, LooseningAddsAndForgetsNothing) {
   Matrix expected = before;
   node_part(expected) += added;
   EXPECT_EQ(filter.covariance(), expected);
-  EXPECT_GT(before.topRightCorner<kSize, 6>().cwiseAbs().maxCoeff(), 0);
+  EXPECT_GT((before.topRightCorner<kSize, 6>().cwiseAbs().maxCoeff()), 0);
   EXPECT_EQ(filter.state().slow, state.slow);
 }
 

@@ -637,29 +637,30 @@ TEST_F(NavigationRunTest, AVelocityThatIsNoNumberLeavesThePosition) {
   EXPECT_TRUE(sink_.observations.empty());
 }
 
-TEST_F(NavigationRunTest, VelocitiesAreUsedIfAskedForAndGatedByThemselves) {
-  for (const char* mode : {"none", "auto"}) {
-    SetUp();
-    options_.aids.gnss_velocity = "on";
-    options_.aids.mode = mode;
-    align();
-    GnssFix outlier = fix_at(30);
-    outlier.velocity_n->y() = 5;
-    run().process(fix_at(20));
-    run().process(outlier);
-    feed_imu(10, 50);
-    if (options_.aids.mode == "none") {
-      EXPECT_EQ(log_.updates.size(), 2u);
-      EXPECT_TRUE(sink_.observations.empty());
-      continue;
-    }
-    EXPECT_EQ(log_.updates.size(), 3u);
-    ASSERT_EQ(sink_.observations.size(), 2u);
-    EXPECT_TRUE(sink_.observations[0].used);
-    EXPECT_EQ(sink_.observations[0].name, "gnss_velocity");
-    EXPECT_FALSE(sink_.observations[1].used);
-    EXPECT_NEAR(sink_.observations[1].normalized_square, 25 / 0.01, 1e-6);
-  }
+TEST_F(NavigationRunTest, VelocitiesAreGatedByThemselves) {
+  options_.aids.gnss_velocity = "on";
+  align();
+  GnssFix outlier = fix_at(30);
+  outlier.velocity_n->y() = 5;
+  run().process(fix_at(20));
+  run().process(outlier);
+  feed_imu(10, 50);
+  EXPECT_EQ(log_.updates.size(), 3u);
+  ASSERT_EQ(sink_.observations.size(), 2u);
+  EXPECT_TRUE(sink_.observations[0].used);
+  EXPECT_EQ(sink_.observations[0].name, "gnss_velocity");
+  EXPECT_FALSE(sink_.observations[1].used);
+  EXPECT_NEAR(sink_.observations[1].normalized_square, 25 / 0.01, 1e-6);
+}
+
+TEST_F(NavigationRunTest, AidsOfModeNoneArePositionsAlone) {
+  options_.aids.gnss_velocity = "on";
+  options_.aids.mode = "none";
+  align();
+  run().process(fix_at(20));
+  feed_imu(10, 50);
+  EXPECT_EQ(log_.updates.size(), 1u);
+  EXPECT_TRUE(sink_.observations.empty());
 }
 
 TEST_F(NavigationRunTest, AFixWithoutSigmaTellsNoTurnOverAHole) {

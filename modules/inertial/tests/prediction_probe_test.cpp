@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "foucault/core/time.h"
+#include "foucault/measurement/gnss_position.h"
 
 namespace foucault {
 namespace {
