@@ -5,7 +5,7 @@
 #include <Eigen/Dense>
 
 #include "foucault/fgo/window_navigator.h"
-#include "noisy_drive.h"
+#include "slow_drive.h"
 
 namespace foucault {
 namespace {
@@ -29,10 +29,12 @@ class BatchTest : public NoisyDrive {
 };
 
 /// A chain as a recorder would leave it, six nodes with fixes at all but two.
-struct ChainDrive : NoisyDrive {
+struct ChainDrive : SlowDrive {
+  explicit ChainDrive(const Layout& with = {})
+      : context{frame_, PreintegrationModel::refined, with} {}
   void TestBody() override {}
 
-  GraphContext context() const { return {frame_, PreintegrationModel::refined, {}}; }
+  const GraphContext context;
 
   /// `integrated_at`: gyro bias of the preintegration. `keep`: the increments.
   BatchChain chain(double gyro_bias_sigma = 2e-4, const Vector3d& integrated_at = Vector3d::Zero(),
@@ -47,10 +49,12 @@ struct ChainDrive : NoisyDrive {
     x.q_w_b = begin.q_n_b;
     x.bias = begin.bias;
     BatchChain out;
-    out.prior = prior_from_covariance(x, SlowVector(0), begin.covariance);
+    begin = with_slow_blocks(begin, context.layout);
+    out.prior = prior_from_covariance(x, begin.slow, begin.covariance);
     out.nodes.push_back({0, x, {}});
     for (int k = 0; k < 5; ++k) {
-      Preintegrator integrator(test_noise(), {integrated_at, x.bias.accel}, k * 1'000'000'000LL);
+      Preintegrator integrator(test_noise(), {integrated_at, x.bias.accel}, k * 1'000'000'000LL,
+                               std::nullopt, scale_of(context.layout, begin.slow));
       ImuInterval& interval = out.intervals.emplace_back();
       for (int64_t i = 0; i < 100; ++i) {
         const int64_t t = k * 1'000'000'000LL + i * 10'000'000;
@@ -58,69 +62,98 @@ struct ChainDrive : NoisyDrive {
         integrator.add(increment);
         if (keep) interval.increments.push_back(increment);
       }
-      interval.factor = std::make_unique<PreintegrationFactor>(integrator.result(), wuhan_earth());
+      interval.factor = std::make_unique<PreintegrationFactor>(integrator.result(), wuhan_earth(),
+                                                               context.layout);
       x = predict(x, integrator.result(), wuhan_earth());
       BatchNode& node = out.nodes.emplace_back();
       node.x = x;
-      if (k != 1 && k != 2) node.observations.push_back({gnss_position(fix_at(k + 1, 0.02))});
+      if (k == 1 || k == 2) continue;
+      node.observations.push_back({gnss_position(fix_at(k + 1, 0.02))});
+      if (context.layout.slow_index(kTemperature)) node.observations.push_back({range_at(k + 1)});
     }
     return out;
   }
 };
 
-/// The cost's gradient and Gauss-Newton matrix, dense.
+/// The cost's gradient and Gauss-Newton matrix, dense, the border behind.
 struct Dense {
+  Dense(const BatchChain& chain, const GraphContext& context, const BatchSolution& at)
+      : slow(at.slow.size()),
+        nodes(kNodeSize * static_cast<Eigen::Index>(at.x.size())),
+        H(Eigen::MatrixXd::Zero(nodes + slow, nodes + slow)),
+        gradient(Eigen::VectorXd::Zero(nodes + slow)) {
+    const StateRows prior = PriorFactor(chain.prior).linearize(at.x[0], at.slow);
+    add(0, prior.J, prior.r);
+    for (std::size_t k = 0; k < at.x.size(); ++k) {
+      const Eigen::Index own = kNodeSize * static_cast<Eigen::Index>(k);
+      for (const NodeObservation& observation : chain.nodes[k].observations) {
+        const ObservationRows z = linearize(observation, at.x[k], at.slow, context);
+        add(own, z.J, z.r);
+      }
+      if (k + 1 == at.x.size()) break;
+      const IntervalRows m = chain.intervals[k].factor->linearize(at.x[k], at.x[k + 1], at.slow);
+      Eigen::MatrixXd J(kNodeSize, 2 * kNodeSize + slow);
+      J << m.J_x0, m.J_x1, m.J_slow;
+      add(own, J, m.r);
+    }
+  }
+
+  /// Rows over the columns from `own` on, and the border.
+  void add(Eigen::Index own, const Eigen::MatrixXd& J, const Eigen::VectorXd& r) {
+    Eigen::MatrixXd whole = Eigen::MatrixXd::Zero(J.rows(), nodes + slow);
+    whole.middleCols(own, J.cols() - slow) = J.leftCols(J.cols() - slow);
+    whole.rightCols(slow) = J.rightCols(slow);
+    H += whole.transpose() * whole;
+    gradient += whole.transpose() * r;
+  }
+
+  Eigen::MatrixXd covariance() const {
+    // In units of sigmas, so that the dense inverse keeps its digits.
+    const Eigen::VectorXd scale = H.diagonal().cwiseSqrt().cwiseInverse();
+    const Eigen::MatrixXd scaled = scale.asDiagonal() * H * scale.asDiagonal();
+    return scale.asDiagonal() * scaled.inverse() * scale.asDiagonal();
+  }
+
+  /// Rows of a node and the border.
+  Eigen::VectorXi rows_of_node(std::size_t k) const {
+    const int own = kNodeSize * static_cast<int>(k);
+    Eigen::VectorXi rows(kNodeSize + slow);
+    rows << Eigen::VectorXi::LinSpaced(kNodeSize, own, own + kNodeSize - 1),
+        Eigen::VectorXi::LinSpaced(slow, static_cast<int>(nodes),
+                                   static_cast<int>(nodes + slow) - 1);
+    return rows;
+  }
+
+  Eigen::Index slow, nodes;
   Eigen::MatrixXd H;
   Eigen::VectorXd gradient;
 };
 
-Dense dense(const BatchChain& chain, const GraphContext& context, const std::vector<NodeState>& x) {
-  const Eigen::Index n = kNodeSize * static_cast<Eigen::Index>(x.size());
-  Dense out{Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n)};
-  const auto add = [&](Eigen::Index at, const Eigen::MatrixXd& J, const Eigen::VectorXd& r) {
-    out.H.block(at, at, J.cols(), J.cols()) += J.transpose() * J;
-    out.gradient.segment(at, J.cols()) += J.transpose() * r;
-  };
-  const SlowVector slow(0);
-  const StateRows prior = PriorFactor(chain.prior).linearize(x[0], slow);
-  add(0, prior.J, prior.r);
-  for (std::size_t k = 0; k < x.size(); ++k) {
-    const Eigen::Index at = kNodeSize * static_cast<Eigen::Index>(k);
-    for (const NodeObservation& observation : chain.nodes[k].observations) {
-      const ObservationRows z = linearize(observation, x[k], slow, context);
-      add(at, z.J, z.r);
-    }
-    if (k + 1 == x.size()) break;
-    const IntervalRows m = chain.intervals[k].factor->linearize(x[k], x[k + 1], slow);
-    Eigen::MatrixXd J(kNodeSize, 2 * kNodeSize);
-    J << m.J_x0, m.J_x1;
-    add(at, J, m.r);
-  }
-  return out;
-}
-
-TEST(Batch, IsTheLeastSquaresSolutionWithItsCovariance) {
-  ChainDrive drive;
+void expect_least_squares(const Layout& layout) {
+  ChainDrive drive(layout);
   BatchChain chain = drive.chain();
   FgoOptions options;
   options.max_iterations = 50;
-  const BatchSolution solution = solve(chain, drive.context(), options, test_noise());
-  const Dense normal = dense(chain, drive.context(), solution.x);
-  // In units of sigmas, so that the dense inverse keeps its digits.
-  const Eigen::VectorXd scale = normal.H.diagonal().cwiseSqrt().cwiseInverse();
-  const Eigen::MatrixXd scaled = scale.asDiagonal() * normal.H * scale.asDiagonal();
-  const Eigen::MatrixXd covariance = scale.asDiagonal() * scaled.inverse() * scale.asDiagonal();
+  const BatchSolution solution = solve(chain, drive.context, options, test_noise());
+  const Dense normal(chain, drive.context, solution);
+  const Eigen::MatrixXd covariance = normal.covariance();
   const Eigen::VectorXd left = covariance * normal.gradient;
   const Eigen::VectorXd sigma = covariance.diagonal().cwiseSqrt();
   EXPECT_LT(left.cwiseQuotient(sigma).cwiseAbs().maxCoeff(), 1e-3);
   for (std::size_t k = 0; k < solution.x.size(); ++k) {
-    const Eigen::Index at = kNodeSize * static_cast<Eigen::Index>(k);
-    const NodeVector unit = sigma.segment<kNodeSize>(at).cwiseInverse();
-    const NodeMatrix difference = NodeMatrix(solution.covariance_w[k].full()) -
-                                  covariance.block<kNodeSize, kNodeSize>(at, at);
+    const Eigen::VectorXi rows = normal.rows_of_node(k);
+    const Eigen::VectorXd unit = sigma(rows).cwiseInverse();
+    const Eigen::MatrixXd difference = solution.covariance_w[k].full() - covariance(rows, rows);
     EXPECT_LT((unit.asDiagonal() * difference * unit.asDiagonal()).cwiseAbs().maxCoeff(), 1e-6)
         << "node " << k;
   }
+}
+
+TEST(Batch, IsTheLeastSquaresSolutionWithItsCovariance) { expect_least_squares({}); }
+
+TEST(Batch, IsTheLeastSquaresSolutionWithABorder) {
+  expect_least_squares(
+      Layout().add(kTemperature, 5).add(block::gyro_scale, 3e-3).add(block::accel_scale, 3e-3));
 }
 
 TEST(Batch, ABiasThatMovedIsIntegratedAnew) {
@@ -131,7 +164,7 @@ TEST(Batch, ABiasThatMovedIsIntegratedAnew) {
   options.max_iterations = 50;
   const auto solved = [&](const Vector3d& integrated_at, bool keep) {
     BatchChain chain = drive.chain(0.05, integrated_at, keep);
-    return solve(chain, drive.context(), options, test_noise());
+    return solve(chain, drive.context, options, test_noise());
   };
   const BatchSolution near = solved(Vector3d::Zero(), true);
   const auto off = [&](const BatchSolution& other) {
