@@ -119,7 +119,8 @@ void BatchRecorder::begin_interval(const Epoch& now) {
 void BatchRecorder::close_interval() {
   const Preintegration pre = measured(*integrator_, context_.model);
   const double bias_sigma = forward_->epoch().sigma_of(block::gyro_bias).maxCoeff();
-  if (5 * bias_sigma * pre.dt < kReintegrationAngle) open_.increments = {};
+  if (5 * bias_sigma * pre.dt < kReintegrationAngle) open_.increments.clear();
+  open_.increments.shrink_to_fit();
   open_.factor = std::make_unique<PreintegrationFactor>(pre, earth_, context_.layout);
   chains_.back().intervals.push_back(std::move(open_));
 }
@@ -129,7 +130,6 @@ std::vector<SmoothedEpoch> BatchRecorder::smoothed() {
   out.reserve(passages_.size());
   for (BatchChain& chain : chains_) {
     BatchSolution solution = solve(chain, context_, options_, noise_);
-    chain.intervals.clear();
     for (std::size_t k = 0; k < chain.nodes.size(); ++k) {
       const Epoch epoch = to_epoch(chain.nodes[k].t_ns, solution.x[k], solution.slow,
                                    solution.covariance_w[k].full(), context_);

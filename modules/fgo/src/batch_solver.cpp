@@ -323,6 +323,7 @@ BatchSolution BatchSolver::solution() {
   go_back([&](std::size_t k, const Pivot& pivot) {
     P = pivot.covariance(P);
     covariances[k] = PackedSymmetric(P);
+    chain_.intervals.pop_back();  // its memory goes to what is still to come
   });
   return {std::move(at_.x), at_.slow, std::move(covariances)};
 }

@@ -135,7 +135,7 @@ void expect_least_squares(const Layout& layout) {
   FgoOptions options;
   options.max_iterations = 50;
   const BatchSolution solution = solve(chain, drive.context, options, test_noise());
-  const Dense normal(chain, drive.context, solution);
+  const Dense normal(drive.chain(), drive.context, solution);  // the same once more
   const Eigen::MatrixXd covariance = normal.covariance();
   const Eigen::VectorXd left = covariance * normal.gradient;
   const Eigen::VectorXd sigma = covariance.diagonal().cwiseSqrt();

@@ -35,7 +35,7 @@ struct BatchSolution {
 /// full one does not lower it. Intervals whose bias has moved are integrated again if their
 /// increments were kept, and in `full` gravity is that of where the nodes come to lie.
 /// Time and memory are linear in the nodes. Of the elimination every 64th node is kept; what is
-/// between is eliminated again on the way back.
+/// between is eliminated again on the way back. The intervals are used up.
 /// Throws std::runtime_error if the problem cannot be solved.
 BatchSolution solve(BatchChain& chain, const GraphContext& context, const FgoOptions& options,
                     const ImuNoise& noise);
