@@ -124,6 +124,7 @@ RunResult run_into(const RunJob& job, const std::filesystem::path& folder, Conso
     if (result.damage) throw DataError(*result.damage);
     throw DataError(fmt::format("'{}': no epoch came out of the data", job.log));
   }
+  result.calibration = calibrated_blocks(output.last_epoch(), settings.calibrate.layout());
   result.resources = meter.used();
   if (report) write_report(result, *report, folder, console);
   if (profile) result.profile = profile->times();

@@ -30,6 +30,7 @@ struct RunResult {
   std::string out;
   bool report = true;
   RunMetrics metrics;
+  std::vector<CalibratedBlock> calibration;
   double statistics_from_s = 0;
   Resources resources;             ///< of reading and estimating, without the report
   std::vector<StageTime> profile;  ///< of everything, if asked for

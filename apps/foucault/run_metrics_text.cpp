@@ -133,6 +133,24 @@ Json consistency_json(const Consistency& c) {
   return json;
 }
 
+Json aids_json(const std::map<std::string, AidMetrics>& aids) {
+  Json json = Json::object();
+  for (const auto& [name, aid] : aids) {
+    json[name] = {{"used", aid.used},
+                  {"rejected", aid.rejected},
+                  {"mean_nis", aid.used > 0 ? Json(aid.mean_nis()) : Json(nullptr)}};
+  }
+  return json;
+}
+
+Json calibration_json(const std::vector<CalibratedBlock>& blocks) {
+  Json json = Json::object();
+  for (const CalibratedBlock& b : blocks)
+    json[std::string(b.block.name)] = {
+        {"value", b.value}, {"sigma", b.sigma}, {"unit", std::string(b.block.unit)}};
+  return json;
+}
+
 Json profile_json(const std::vector<StageTime>& profile) {
   Json json = Json::object();
   for (const StageTime& time : profile) {
@@ -205,13 +223,39 @@ reports::Table reference_table(const ReferenceMetrics& r) {
   return table;
 }
 
+reports::Table aids_table(const std::map<std::string, AidMetrics>& aids) {
+  reports::Table table;
+  table.title = "Other measurements";
+  table.note = "Mean NIS: innovations squared by their covariance; as many as components if it is right.";
+  table.header = {"", "used", "rejected", "mean NIS"};
+  for (const auto& [name, aid] : aids) {
+    table.rows.push_back({name, fmt::format("{}", aid.used), fmt::format("{}", aid.rejected),
+                          fmt::format("{:.2f}", aid.mean_nis())});
+  }
+  return table;
+}
+
+reports::Table calibration_table(const std::vector<CalibratedBlock>& blocks) {
+  reports::Table table;
+  table.title = "Calibration";
+  table.note = "At the last epoch, with 1 sigma.";
+  table.header = {"", "unit", "value", "sigma"};
+  for (const CalibratedBlock& b : blocks) {
+    table.rows.push_back({std::string(b.block.name), std::string(b.block.unit),
+                          fmt::format("{:.4g}", fmt::join(b.value, ", ")),
+                          fmt::format("{:.2g}", fmt::join(b.sigma, ", "))});
+  }
+  return table;
+}
+
 }  // namespace
 
 std::string metrics_json(const RunResult& result) {
   const RunMetrics& m = result.metrics;
   Json json{{"method", result.method},    {"epochs", m.epochs},
             {"duration_s", m.duration_s}, {"trustworthy", m.trust.trustworthy},
-            {"reasons", m.trust.reasons}, {"gnss", gnss_json(m.gnss)}};
+            {"reasons", m.trust.reasons}, {"gnss", gnss_json(m.gnss)},
+            {"aids", aids_json(m.aids)},  {"calibration", calibration_json(result.calibration)}};
   if (m.reference) json["reference"] = reference_json(*m.reference);
   json["consistency"] = consistency_json(m.consistency);
   json["statistics_from_s"] = result.statistics_from_s;
@@ -231,6 +275,14 @@ std::vector<std::string> metrics_lines(const RunResult& result) {
       fmt::format("method     {}, {} epochs over {:.1f} s", result.method, m.epochs, m.duration_s),
       fmt::format("GNSS       {} fixes used, {} rejected; innovation RMS north / east / down {}",
                   m.gnss.used, m.gnss.rejected, innovation_text(m.gnss))};
+  for (const auto& [name, aid] : m.aids) {
+    lines.push_back(fmt::format("aid        {}: {} used, {} rejected; mean NIS {:.2f}", name,
+                                aid.used, aid.rejected, aid.mean_nis()));
+  }
+  for (const CalibratedBlock& b : result.calibration) {
+    lines.push_back(fmt::format("calibrated {} [{}]: {:.3g} +- {:.2g}", b.block.name, b.block.unit,
+                                fmt::join(b.value, " "), fmt::join(b.sigma, " ")));
+  }
   if (m.reference) {
     lines.push_back(fmt::format("reference  RMS error horizontal {:.3f} m, vertical {:.3f} m{}",
                                 m.reference->horizontal_rmse, m.reference->vertical_rmse,
@@ -285,6 +337,8 @@ std::vector<reports::Table> metrics_tables(const RunResult& result) {
   std::vector<reports::Table> tables;
   if (result.metrics.reference) tables.push_back(reference_table(*result.metrics.reference));
   if (result.metrics.gnss.samples > 0) tables.push_back(gnss_table(result.metrics.gnss));
+  if (!result.metrics.aids.empty()) tables.push_back(aids_table(result.metrics.aids));
+  if (!result.calibration.empty()) tables.push_back(calibration_table(result.calibration));
   return tables;
 }
 

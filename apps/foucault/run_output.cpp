@@ -52,7 +52,7 @@ void RunOutput::start_metrics(int64_t first_fix_ns) {
 }
 
 void RunOutput::epoch(const Epoch& epoch) {
-  last_epoch_ns_ = epoch.t_ns;
+  last_epoch_ = epoch;
   write(epoch);
   collect(epoch);
   const StageTimer timer(Stage::statistics);
@@ -76,6 +76,10 @@ void RunOutput::fix(const FixResult& fix) {
   if (metrics_) metrics_->fix(fix);
 }
 
+void RunOutput::observation(const ObservationResult& result) {
+  if (metrics_) metrics_->observation(result);
+}
+
 void RunOutput::prediction(const PredictionResult& prediction) {
   if (metrics_) metrics_->prediction(prediction);
 }
@@ -90,7 +94,7 @@ void RunOutput::notice(const Notice& notice) {
 }
 
 void RunOutput::damage(const std::string& text) {
-  if (report_ != nullptr) report_->notice({last_epoch_ns_, NoticeKind::skipped, text});
+  if (report_ != nullptr) report_->notice({last_epoch_.t_ns, NoticeKind::skipped, text});
 }
 
 void RunOutput::reference_error(const Epoch& epoch, const ReferenceError& error) {

@@ -27,6 +27,7 @@ class RunOutput : public Sink {
 
   void epoch(const Epoch& epoch) override;
   void fix(const FixResult& fix) override;
+  void observation(const ObservationResult& result) override;
   void notice(const Notice& notice) override;
   bool wants_predictions() const override { return true; }
   void prediction(const PredictionResult& prediction) override;
@@ -35,6 +36,7 @@ class RunOutput : public Sink {
 
   /// Completes the files, and what the report needs.
   RunMetrics finish();
+  const Epoch& last_epoch() const { return last_epoch_; }
 
  private:
   void start_metrics(int64_t first_fix_ns);
@@ -47,7 +49,7 @@ class RunOutput : public Sink {
   SolutionWriter solution_;
   ReferenceComparison comparison_;
   std::optional<RunMetricsCollector> metrics_;  ///< from the first fix on
-  int64_t last_epoch_ns_ = 0;
+  Epoch last_epoch_;
   reports::RunReport* report_;
   Console& console_;
 };

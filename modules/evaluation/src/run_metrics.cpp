@@ -41,6 +41,19 @@ std::optional<double> normalized_square(const Eigen::Vector3d& error,
   return std::isfinite(square) ? std::optional(square) : std::nullopt;
 }
 
+std::vector<CalibratedBlock> calibrated_blocks(const Epoch& epoch, const Layout& layout) {
+  std::vector<CalibratedBlock> blocks;
+  const SlowVector variance = epoch.covariance.diagonal().tail(layout.slow_size());
+  for (const SlowBlock& slow : layout.slow()) {
+    CalibratedBlock& out = blocks.emplace_back(CalibratedBlock{slow.block, {}, {}});
+    for (int i = slow.index; i < slow.index + slow.block.size; ++i) {
+      out.value.push_back(epoch.slow[i]);
+      out.sigma.push_back(std::sqrt(variance[i]));
+    }
+  }
+  return blocks;
+}
+
 void RunMetricsCollector::Squares::add(const Eigen::Vector3d& value) {
   ++samples;
   sum += value.cwiseAbs2();
@@ -102,6 +115,12 @@ void RunMetricsCollector::add_rejected(const FixResult& fix) {
   rejected_nis_sum_ += *nis;
 }
 
+void RunMetricsCollector::observation(const ObservationResult& result) {
+  AidMetrics& aid = aids_[std::string(result.name)];
+  ++(result.used ? aid.used : aid.rejected);
+  if (result.used) aid.nis_sum += result.normalized_square;
+}
+
 void RunMetricsCollector::prediction(const PredictionResult& prediction) {
   consistency_.prediction(prediction);
 }
@@ -153,6 +172,7 @@ ReferenceMetrics RunMetricsCollector::reference_metrics(const Consistency& consi
 
 RunMetrics RunMetricsCollector::metrics() const {
   RunMetrics m;
+  m.aids = aids_;
   m.epochs = states_.given_out;
   m.duration_s = seconds_between(states_.begin_ns, last_ns_);
   m.gnss.used = used_;

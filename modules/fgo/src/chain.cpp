@@ -7,42 +7,50 @@
 namespace foucault {
 namespace {
 
-constexpr int kNode = error_state::kSize;
+using Eigen::Dynamic;
+using Eigen::Index;
 
-/// Reflects `kDense` rows over kNode triangular ones into the upper triangle of the first kNode
-/// columns: in column k there is something in rows k to k + kDense alone. Small rows keep their
-/// digits if the large ones stand above: measurements, over what is left of the past.
-template <int kDense, int kColumns>
-void reflect(Eigen::Matrix<double, kDense + kNode, kColumns>& rows) {
-  for (int k = 0; k < kNode; ++k) {
-    Eigen::Matrix<double, kDense + 1, 1> v = rows.col(k).template segment<kDense + 1>(k);
+/// Reflects `dense` rows over triangular ones below them into the upper triangle of the first
+/// `pivots` columns: in column k there is something in rows k to k + dense alone. Small rows keep
+/// their digits if the large ones stand above: measurements, over what is left of the past.
+template <int kDense, class Rows>
+void reflect(Rows& rows, Index dense, Index pivots) {
+  constexpr int kLength = kDense == Dynamic ? Dynamic : kDense + 1;
+  constexpr int kMostLength = kDense == Dynamic ? kMostSize + 1 : kDense + 1;
+  for (Index k = 0; k < pivots; ++k) {
+    Eigen::Matrix<double, kLength, 1, Eigen::ColMajor, kMostLength, 1> v =
+        rows.col(k).template segment<kLength>(k, dense + 1);
     const double norm = std::copysign(v.norm(), v[0]);
     if (norm == 0) continue;
-    rows.col(k).template segment<kDense + 1>(k).setZero();
+    rows.col(k).template segment<kLength>(k, dense + 1).setZero();
     rows(k, k) = -norm;
     v[0] += norm;
     const double scale = 1 / (norm * v[0]);
-    for (int j = k + 1; j < kColumns; ++j) {
-      auto column = rows.col(j).template segment<kDense + 1>(k);
+    for (Index j = k + 1; j < rows.cols(); ++j) {
+      auto column = rows.col(j).template segment<kLength>(k, dense + 1);
       column -= (scale * v.dot(column)) * v;
     }
   }
 }
 
-template <int kRows>
-void put_on_top(const Eigen::Matrix<double, kRows, kNode>& J,
-                const Eigen::Matrix<double, kRows, 1>& r, NodeInformation& information) {
-  Eigen::Matrix<double, kRows + kNode, kNode + 1> rows;
+/// Takes r + J d to what is known of d.
+template <int kDense, class Jacobian, class Residual>
+void put_on_top(const Jacobian& J, const Residual& r, NodeInformation& information) {
+  constexpr int kMostDense = kDense == Dynamic ? kMostSize : kDense;
+  const Index size = information.r.size();
+  Eigen::Matrix<double, Dynamic, Dynamic, Eigen::ColMajor, kMostDense + kMostSize, kMostSize + 1>
+      rows(r.size() + size, size + 1);
   rows << J, r, information.S, information.r;
-  reflect<kRows, kNode + 1>(rows);
-  information.S = rows.template topLeftCorner<kNode, kNode>();
-  information.r = rows.template topRightCorner<kNode, 1>();
+  reflect<kDense>(rows, r.size(), size);
+  information.S = rows.topLeftCorner(size, size);
+  information.r = rows.col(size).head(size);
 }
 
 /// A column that depends on those before it keeps nothing but rounding on the diagonal.
-void throw_if_undetermined(const Matrix15d& R) {
+template <class Triangle>
+void throw_if_undetermined(const Triangle& R) {
   constexpr double kRounding = 1e-15;
-  for (int i = 0; i < kNode; ++i) {
+  for (Index i = 0; i < R.rows(); ++i) {
     if (!(std::abs(R(i, i)) > kRounding * R.col(i).norm()))
       throw std::runtime_error("a node's state is not determined");
   }
@@ -50,44 +58,83 @@ void throw_if_undetermined(const Matrix15d& R) {
 
 }  // namespace
 
-void NodeInformation::add(const NodeInformation& other) {
-  put_on_top<kNode>(other.S, other.r, *this);
-}
+NodeInformation::NodeInformation(Index slow)
+    : S(StateMatrix::Zero(kNodeSize + slow, kNodeSize + slow)),
+      r(StateVector::Zero(kNodeSize + slow)) {}
 
-void NodeInformation::add(const PriorFactor::Linearized& prior) {
-  put_on_top<kNode>(prior.J, prior.r, *this);
-}
+void NodeInformation::add(const StateRows& rows) { put_on_top<Dynamic>(rows.J, rows.r, *this); }
 
-void NodeInformation::add(const GnssFactor::Linearized& fix, double weight) {
+void NodeInformation::add(const ObservationRows& rows, double weight) {
   const double root = std::sqrt(weight);
-  put_on_top<3>(root * fix.J, root * fix.r, *this);
+  const ObservationRows weighted{root * rows.r, root * rows.J};
+  if (rows.r.size() == 3) {
+    put_on_top<3>(weighted.J, weighted.r, *this);
+  } else {
+    put_on_top<Dynamic>(weighted.J, weighted.r, *this);
+  }
 }
 
-Vector15d Elimination::eliminated(const Vector15d& next) const {
+void NodeInformation::move_border(const SlowVector& moved) {
+  if (moved.size() > 0) r += S.rightCols(moved.size()) * moved;
+}
+
+StateVector NodeInformation::solution() const {
+  throw_if_undetermined(S);
+  return S.triangularView<Eigen::Upper>().solve(-r);
+}
+
+NodeVector Conditional::eliminated(const StateVector& next) const {
   return R.triangularView<Eigen::Upper>().solve(-a - A * next);
 }
 
-Elimination eliminate(const NodeInformation& first, const MotionResidual& interval) {
-  Eigen::Matrix<double, 2 * kNode, 2 * kNode + 1> rows;
-  rows << interval.J_x0, interval.J_x1, interval.r, first.S, Matrix15d::Zero(), first.r;
-  reflect<kNode, 2 * kNode + 1>(rows);
+StateMatrix Conditional::covariance(const StateMatrix& next) const {
+  const Index size = next.rows();
+  const Index slow = size - kNodeSize;
+  const auto R_upper = R.triangularView<Eigen::Upper>();
+  const NodeByState F = -R_upper.solve(A);
+  const NodeMatrix root = R_upper.solve(NodeMatrix::Identity());
+  const NodeByState FP = F * next;
+  StateMatrix P(size, size);
+  P.bottomRightCorner(slow, slow) = next.bottomRightCorner(slow, slow);
+  P.topRightCorner(kNodeSize, slow) = FP.rightCols(slow);
+  P.bottomLeftCorner(slow, kNodeSize) = FP.rightCols(slow).transpose();
+  const NodeMatrix node = root * root.transpose() + FP * F.transpose();
+  node_part(P) = 0.5 * (node + node.transpose());
+  return P;
+}
+
+Elimination eliminate(const NodeInformation& first, const IntervalRows& interval) {
+  constexpr int kNode = kNodeSize;
+  const Index slow = first.slow();
+  const Index columns = 2 * kNode + slow;
+  Eigen::Matrix<double, 2 * kNode, Dynamic, Eigen::ColMajor, 2 * kNode, kNode + kMostSize + 1> rows(
+      2 * kNode, columns + 1);
+  rows << interval.J_x0, interval.J_x1, interval.J_slow, interval.r,  //
+      first.S.topLeftCorner<kNode, kNode>(), NodeMatrix::Zero(),
+      first.S.topRightCorner(kNode, slow), first.r.head<kNode>();
+  reflect<kNode>(rows, kNode, kNode);
   Elimination out;
   out.R = rows.topLeftCorner<kNode, kNode>();
   throw_if_undetermined(out.R);
-  out.A = rows.block<kNode, kNode>(0, kNode);
-  out.a = rows.topRightCorner<kNode, 1>();
-  put_on_top<kNode>(rows.block<kNode, kNode>(kNode, kNode), rows.bottomRightCorner<kNode, 1>(),
-                    out.rest);
+  out.A = rows.template block<kNode, Dynamic>(0, kNode, kNode, kNode + slow);
+  out.a = rows.col(columns).head<kNode>();
+  out.rest = NodeInformation(slow);
+  out.rest.S.bottomRightCorner(slow, slow) = first.S.bottomRightCorner(slow, slow);
+  out.rest.r.tail(slow) = first.r.tail(slow);
+  put_on_top<kNode>(rows.template block<kNode, Dynamic>(kNode, kNode, kNode, kNode + slow),
+                    rows.col(columns).template tail<kNode>(), out.rest);
   return out;
 }
 
-SquareRootPrior to_prior(const NodeInformation& information, const NodeState& at) {
-  return {at, information.S, information.r};
+SquareRootPrior to_prior(const NodeInformation& information, const NodeState& at,
+                         const SlowVector& slow) {
+  return {at, slow, information.S, information.r};
 }
 
-Matrix15d covariance(const NodeInformation& information) {
+StateMatrix covariance(const NodeInformation& information) {
   throw_if_undetermined(information.S);
-  Matrix15d root = Matrix15d::Identity();
+  const Index size = information.r.size();
+  StateMatrix root = StateMatrix::Identity(size, size);
   information.S.triangularView<Eigen::Upper>().solveInPlace(root);
   return root * root.transpose();
 }

@@ -61,22 +61,10 @@ ceres::Problem::Options problem_options() {
 
 }  // namespace
 
-std::unique_ptr<ceres::LossFunction> make_loss(const FgoOptions& options) {
-  if (options.robust == "huber") return std::make_unique<ceres::HuberLoss>(options.robust_scale);
-  if (options.robust == "cauchy") return std::make_unique<ceres::CauchyLoss>(options.robust_scale);
-  return nullptr;
-}
-
-double loss_weight(const ceres::LossFunction* loss, const GnssFactor::Linearized& fix) {
-  if (loss == nullptr) return 1;
-  double rho[3];
-  loss->Evaluate(fix.r.squaredNorm(), rho);
-  return rho[1];
-}
-
-ChainProblem::ChainProblem(const NodeState& first, PriorFactor& prior, ceres::LossFunction* loss)
-    : loss_(loss), problem_(problem_options()) {
-  problem_.AddResidualBlock(&prior, nullptr, add_block(first));
+ChainProblem::ChainProblem(const NodeState& first, const SlowVector& slow, PriorFactor& prior,
+                           ceres::LossFunction* loss)
+    : loss_(loss), slow_(slow), problem_(problem_options()) {
+  problem_.AddResidualBlock(&prior, nullptr, with_border({add_block(first)}));
 }
 
 double* ChainProblem::add_block(const NodeState& x) {
@@ -86,13 +74,18 @@ double* ChainProblem::add_block(const NodeState& x) {
   return block.data();
 }
 
-void ChainProblem::add_node(const NodeState& x, PreintegrationFactor& interval) {
-  double* const before = blocks_.back().data();
-  problem_.AddResidualBlock(&interval, nullptr, before, add_block(x));
+std::vector<double*> ChainProblem::with_border(std::vector<double*> nodes) {
+  if (slow_.size() > 0) nodes.push_back(slow_.data());
+  return nodes;
 }
 
-void ChainProblem::add_fix(GnssFactor& fix) {
-  problem_.AddResidualBlock(&fix, loss_, blocks_.back().data());
+void ChainProblem::add_node(const NodeState& x, PreintegrationFactor& interval) {
+  double* const before = blocks_.back().data();
+  problem_.AddResidualBlock(&interval, nullptr, with_border({before, add_block(x)}));
+}
+
+void ChainProblem::add(ObservationFactor& observation) {
+  problem_.AddResidualBlock(&observation, loss_, with_border({blocks_.back().data()}));
 }
 
 void ChainProblem::optimize(const FgoOptions& options) {

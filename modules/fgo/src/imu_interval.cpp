@@ -1,37 +1,37 @@
 #include "foucault/fgo/imu_interval.h"
 
 namespace foucault {
+
 Preintegration measured(const Preintegrator& integrator, PreintegrationModel model) {
   return model == PreintegrationModel::full ? integrator.result_with_bias_decay()
                                             : integrator.result();
 }
 
-bool bias_moved(const Preintegration& pre, const ImuBias& bias) {
-  return (bias.gyro - pre.bias.gyro).norm() * pre.dt >= kReintegrationAngle;
+bool has_turned(const ImuInterval& interval, const ImuBias& bias, const SlowVector& slow) {
+  return interval.factor->turned_by(bias, slow) >= kReintegrationAngle;
 }
 
-void reintegrate(ImuInterval& interval, const ImuBias& bias, const ImuNoise& noise,
-                 PreintegrationModel model) {
+void reintegrate(ImuInterval& interval, const ImuBias& bias, const SlowVector& slow,
+                 const ImuNoise& noise, const GraphContext& context) {
   const EarthModel earth = interval.factor->earth();
-  Preintegrator integrator(noise, bias, interval.factor->preintegration().t_begin_ns,
-                           interval.before);
+  Preintegrator integrator(noise, bias, interval.factor->t_begin_ns(), interval.before,
+                           scale_of(context.layout, slow));
   for (const ImuIncrement& increment : interval.increments) integrator.add(increment);
-  Preintegration pre = measured(integrator, model);
+  Preintegration pre = measured(integrator, context.model);
   if (interval.loosened) pre.covariance += *interval.loosened;
-  interval.factor = std::make_unique<PreintegrationFactor>(pre, earth);
+  interval.factor = std::make_unique<PreintegrationFactor>(pre, earth, context.layout);
 }
 
-MotionResidual unwhitened(const ImuInterval& interval, const NodeState& begin,
-                          const NodeState& end) {
-  return motion_residual(begin, end, interval.factor->preintegration(), interval.factor->earth());
-}
-
-void loosen(ImuInterval& interval, const Matrix15d& added) {
-  if (!interval.loosened) interval.loosened = std::make_unique<Matrix15d>(Matrix15d::Zero());
-  *interval.loosened += added;
+void loosen(ImuInterval& interval, const NodeState& begin, const NodeState& end,
+            const NodeMatrix& added, const Layout& layout) {
   Preintegration pre = interval.factor->preintegration();
-  pre.covariance += added;
-  interval.factor = std::make_unique<PreintegrationFactor>(pre, interval.factor->earth());
+  const EarthModel earth = interval.factor->earth();
+  const NodeMatrix J = motion_residual(begin, end, pre, earth).J_x1;
+  const NodeMatrix of_residual = J * added * J.transpose();
+  if (!interval.loosened) interval.loosened = std::make_unique<NodeMatrix>(NodeMatrix::Zero());
+  *interval.loosened += of_residual;
+  pre.covariance += of_residual;
+  interval.factor = std::make_unique<PreintegrationFactor>(pre, earth, layout);
 }
 
 }  // namespace foucault

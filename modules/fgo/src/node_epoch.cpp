@@ -16,33 +16,41 @@ Eigen::Quaterniond attitude_turn(const Eigen::Matrix3d& R, PreintegrationModel m
 
 }  // namespace
 
-Matrix15d turned(const Matrix15d& P, const Eigen::Matrix3d& R) {
-  Matrix15d T = Matrix15d::Identity();
-  T.block<3, 3>(error_state::kPosition, error_state::kPosition) = R;
-  T.block<3, 3>(error_state::kVelocity, error_state::kVelocity) = R;
-  return T * P * T.transpose();
+StateMatrix turned(const StateMatrix& P, const Eigen::Matrix3d& R) {
+  StateMatrix out = P;
+  for (const NodeBlock& block : {block::position, block::velocity}) {
+    rows_of(out, block) = (R * rows_of(out, block)).eval();
+    columns_of(out, block) = (columns_of(out, block) * R.transpose()).eval();
+  }
+  return out;
 }
 
-NodeState to_node(const Epoch& epoch, const LocalFrame& frame, PreintegrationModel model) {
-  const Eigen::Matrix3d R_w_n = frame.R_w_n(epoch.position);
-  NodeState x;
-  x.p_w_b = frame.to_local(epoch.position);
-  x.v_w_b = R_w_n * epoch.velocity_n;
-  x.q_w_b = (attitude_turn(R_w_n, model) * epoch.q_n_b).normalized();
-  x.bias = epoch.bias;
-  return x;
+LocalNode to_nav(const NodeState& x, const SlowVector& slow, const GraphContext& context) {
+  LocalNode local;
+  local.x.position = context.frame.to_geodetic(x.p_w_b);
+  local.R_n_w = context.frame.R_w_n(local.x.position).transpose();
+  local.x.velocity_n = local.R_n_w * x.v_w_b;
+  local.x.q_n_b = (attitude_turn(local.R_n_w, context.model) * x.q_w_b).normalized();
+  local.x.bias = x.bias;
+  local.x.slow = slow;
+  return local;
 }
 
-Epoch to_epoch(int64_t t_ns, const NodeState& x, const Matrix15d& covariance_w,
-               const LocalFrame& frame, PreintegrationModel model) {
-  Epoch epoch;
+NodeState to_node(const NavState& x, const GraphContext& context) {
+  const Eigen::Matrix3d R_w_n = context.frame.R_w_n(x.position);
+  NodeState node;
+  node.p_w_b = context.frame.to_local(x.position);
+  node.v_w_b = R_w_n * x.velocity_n;
+  node.q_w_b = (attitude_turn(R_w_n, context.model) * x.q_n_b).normalized();
+  node.bias = x.bias;
+  return node;
+}
+
+Epoch to_epoch(int64_t t_ns, const NodeState& x, const SlowVector& slow,
+               const StateMatrix& covariance_w, const GraphContext& context) {
+  const LocalNode local = to_nav(x, slow, context);
+  Epoch epoch{local.x, turned(covariance_w, local.R_n_w)};
   epoch.t_ns = t_ns;
-  epoch.position = frame.to_geodetic(x.p_w_b);
-  const Eigen::Matrix3d R_n_w = frame.R_w_n(epoch.position).transpose();
-  epoch.velocity_n = R_n_w * x.v_w_b;
-  epoch.q_n_b = (attitude_turn(R_n_w, model) * x.q_w_b).normalized();
-  epoch.bias = x.bias;
-  epoch.covariance = turned(covariance_w, R_n_w);
   return epoch;
 }
 

@@ -7,33 +7,35 @@
 
 namespace foucault {
 
-SquareRootPrior prior_from_covariance(const NodeState& at, const Matrix15d& covariance) {
-  const Eigen::LLT<Matrix15d> llt(covariance);
+SquareRootPrior prior_from_covariance(const NodeState& at, const SlowVector& slow_at,
+                                      const StateMatrix& covariance) {
+  const Eigen::LLT<StateMatrix> llt(covariance);
   if (llt.info() != Eigen::Success)
     throw std::invalid_argument("covariance of a prior is not positive definite");
-  SquareRootPrior prior;
-  prior.at = at;
+  const Eigen::Index size = covariance.rows();
+  SquareRootPrior prior{at, slow_at, StateMatrix::Identity(size, size), StateVector::Zero(size)};
   llt.matrixL().solveInPlace(prior.S);
   return prior;
 }
 
-PriorFactor::Linearized PriorFactor::linearize(const NodeState& x) const {
-  const Vector15d d = boxminus(x, prior_.at);
-  Matrix15d J = prior_.S;
-  J.middleCols<3>(error_state::kAttitude) =
-      prior_.S.middleCols<3>(error_state::kAttitude) *
-      so3::right_jacobian_inverse(d.segment<3>(error_state::kAttitude));
-  return {prior_.r + prior_.S * d, J};
+PriorFactor::PriorFactor(const SquareRootPrior& prior) : prior_(prior) {
+  set_num_residuals(static_cast<int>(prior.r.size()));
+  *mutable_parameter_block_sizes() = block_sizes(1, prior.slow_at.size());
+}
+
+StateRows PriorFactor::linearize(const NodeState& x, const SlowVector& slow) const {
+  StateVector d(prior_.r.size());
+  d << boxminus(x, prior_.at), slow - prior_.slow_at;
+  StateRows rows{prior_.r + prior_.S * d, prior_.S};
+  columns_of(rows.J, block::attitude) =
+      columns_of(prior_.S, block::attitude) * so3::right_jacobian_inverse(part(d, block::attitude));
+  return rows;
 }
 
 bool PriorFactor::Evaluate(double const* const* blocks, double* residual,
                            double** jacobians) const {
-  const Linearized prior = linearize(read_block(blocks[0]));
-  Eigen::Map<Vector15d>{residual} = prior.r;
-  if (jacobians != nullptr && jacobians[0] != nullptr) {
-    Eigen::Map<Eigen::Matrix<double, 15, 16, Eigen::RowMajor>>{jacobians[0]} =
-        ambient_jacobian<15>(prior.J, blocks[0]);
-  }
+  const StateRows rows = linearize(read_block(blocks[0]), read_border(*this, blocks));
+  write_rows(rows, blocks, residual, jacobians);
   return true;
 }
 

@@ -5,6 +5,16 @@ namespace {
 
 constexpr int kP = 0, kV = 3, kQ = 6, kBg = 10, kBa = 13;
 
+/// All but the attitude are their own tangents.
+struct Copied {
+  int at;
+  NodeBlock tangent;
+};
+constexpr Copied kCopied[] = {{kP, block::position},
+                              {kV, block::velocity},
+                              {kBg, block::gyro_bias},
+                              {kBa, block::accel_bias}};
+
 /// d(q * exp(d)) / dd at d = 0 for q = xyzw, 4x3: half of the left product matrix (5).
 Eigen::Matrix<double, 4, 3> quaternion_plus_jacobian(const double* q) {
   const double x = q[0], y = q[1], z = q[2], w = q[3];
@@ -12,6 +22,14 @@ Eigen::Matrix<double, 4, 3> quaternion_plus_jacobian(const double* q) {
   J << w, -z, y, z, w, -x, -y, x, w, -x, -y, -z;
   return 0.5 * J;
 }
+
+/// d dtheta / d(xyzw) at the unit quaternion q.
+Eigen::Matrix<double, 3, 4> quaternion_minus_jacobian(const double* q) {
+  return 4 * quaternion_plus_jacobian(q).transpose();
+}
+
+using PlusMatrix = Eigen::Matrix<double, kStateBlockSize, kNodeSize, Eigen::RowMajor>;
+using MinusMatrix = Eigen::Matrix<double, kNodeSize, kStateBlockSize, Eigen::RowMajor>;
 
 }  // namespace
 
@@ -33,45 +51,66 @@ void write_block(const NodeState& x, double* block) {
   Eigen::Map<Eigen::Vector3d>(block + kBa) = x.bias.accel;
 }
 
-Eigen::Matrix<double, 16, 15, Eigen::RowMajor> plus_jacobian(const double* block) {
-  Eigen::Matrix<double, 16, 15, Eigen::RowMajor> J =
-      Eigen::Matrix<double, 16, 15, Eigen::RowMajor>::Zero();
-  J.block<6, 6>(kP, error_state::kPosition).setIdentity();
-  J.block<4, 3>(kQ, error_state::kAttitude) = quaternion_plus_jacobian(block + kQ);
-  J.block<6, 6>(kBg, error_state::kGyroBias).setIdentity();
+std::vector<int32_t> block_sizes(int nodes, Eigen::Index slow) {
+  std::vector<int32_t> sizes(nodes, kStateBlockSize);
+  if (slow > 0) sizes.push_back(static_cast<int32_t>(slow));
+  return sizes;
+}
+
+SlowVector read_border(const ceres::CostFunction& factor, double const* const* blocks, int nodes) {
+  const std::vector<int32_t>& sizes = factor.parameter_block_sizes();
+  if (static_cast<int>(sizes.size()) == nodes) return SlowVector(0);
+  return Eigen::Map<const Eigen::VectorXd>(blocks[nodes], sizes[nodes]);
+}
+
+PlusMatrix plus_jacobian(const double* block) {
+  PlusMatrix J = PlusMatrix::Zero();
+  for (const Copied& copied : kCopied)
+    J.block<3, 3>(copied.at, copied.tangent.offset).setIdentity();
+  J.block<4, 3>(kQ, block::attitude.offset) = quaternion_plus_jacobian(block + kQ);
   return J;
 }
 
-Eigen::Matrix<double, 15, 16, Eigen::RowMajor> minus_jacobian(const double* block) {
-  Eigen::Matrix<double, 15, 16, Eigen::RowMajor> J =
-      Eigen::Matrix<double, 15, 16, Eigen::RowMajor>::Zero();
-  J.block<6, 6>(error_state::kPosition, kP).setIdentity();
-  J.block<3, 4>(error_state::kAttitude, kQ) = quaternion_minus_jacobian(block + kQ);
-  J.block<6, 6>(error_state::kGyroBias, kBg).setIdentity();
+MinusMatrix minus_jacobian(const double* block) {
+  MinusMatrix J = MinusMatrix::Zero();
+  for (const Copied& copied : kCopied)
+    J.block<3, 3>(copied.tangent.offset, copied.at).setIdentity();
+  J.block<3, 4>(block::attitude.offset, kQ) = quaternion_minus_jacobian(block + kQ);
   return J;
 }
 
-Eigen::Matrix<double, 3, 4> quaternion_minus_jacobian(const double* q) {
-  return 4 * quaternion_plus_jacobian(q).transpose();
+/// J * minus_jacobian(block): only the attitude's columns are more than copied.
+void write_node_jacobian(const NodeColumns& J, const double* block, double* out) {
+  Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, kStateBlockSize, Eigen::RowMajor>> ambient(
+      out, J.rows(), kStateBlockSize);
+  for (const Copied& copied : kCopied)
+    ambient.middleCols<3>(copied.at) = columns_of(J, copied.tangent);
+  ambient.middleCols<4>(kQ) =
+      columns_of(J, block::attitude).lazyProduct(quaternion_minus_jacobian(block + kQ));
+}
+
+void write_border_jacobian(const BorderColumns& J, double* out) {
+  Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(out, J.rows(),
+                                                                                     J.cols()) = J;
 }
 
 bool StateManifold::Plus(const double* x, const double* delta, double* x_plus_delta) const {
-  write_block(boxplus(read_block(x), Eigen::Map<const Vector15d>(delta)), x_plus_delta);
+  write_block(boxplus(read_block(x), Eigen::Map<const NodeVector>(delta)), x_plus_delta);
   return true;
 }
 
 bool StateManifold::PlusJacobian(const double* x, double* jacobian) const {
-  Eigen::Map<Eigen::Matrix<double, 16, 15, Eigen::RowMajor>>{jacobian} = plus_jacobian(x);
+  Eigen::Map<PlusMatrix>{jacobian} = plus_jacobian(x);
   return true;
 }
 
 bool StateManifold::Minus(const double* y, const double* x, double* y_minus_x) const {
-  Eigen::Map<Vector15d>{y_minus_x} = boxminus(read_block(y), read_block(x));
+  Eigen::Map<NodeVector>{y_minus_x} = boxminus(read_block(y), read_block(x));
   return true;
 }
 
 bool StateManifold::MinusJacobian(const double* x, double* jacobian) const {
-  Eigen::Map<Eigen::Matrix<double, 15, 16, Eigen::RowMajor>>{jacobian} = minus_jacobian(x);
+  Eigen::Map<MinusMatrix>{jacobian} = minus_jacobian(x);
   return true;
 }
 

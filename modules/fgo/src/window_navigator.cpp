@@ -5,9 +5,9 @@
 #include "chain_problem.h"
 #include "foucault/core/profile.h"
 #include "foucault/core/time.h"
-#include "foucault/measurement/gnss_position.h"
 #include "graph_noise.h"
 #include "node_epoch.h"
+#include "robust_loss.h"
 
 namespace foucault {
 namespace {
@@ -16,7 +16,7 @@ namespace {
 /// velocity increment and 0.02 % of a sigma.
 constexpr double kSettled = 2e-4;  // [rad]
 
-/// A robust loss weighs a fix by its residual: its node is settled while that is. [sigma]
+/// Nor does a residual count that is off by less. [sigma]
 constexpr double kSettledResidual = 0.05;
 
 /// Each round solves a longer part of the window; the whole of it within a few.
@@ -25,8 +25,12 @@ constexpr int kRounds = 8;
 }  // namespace
 
 WindowNavigator::WindowNavigator(const FgoOptions& options, PreintegrationModel model,
-                                 const ImuNoise& noise)
-    : options_(options), model_(model), noise_(noise), loss_(make_loss(options)) {
+                                 const ImuNoise& noise, const Layout& layout)
+    : options_(options),
+      context_{LocalFrame(Geodetic{}), model, as_constants(layout)},
+      noise_(noise),
+      loss_(make_loss(options)),
+      slow_(SlowVector::Zero(layout.slow_size())) {
   require_noise(noise);
 }
 
@@ -34,34 +38,40 @@ WindowNavigator::~WindowNavigator() = default;
 
 void WindowNavigator::start(const Epoch& initial) {
   integrator_.reset();
-  frame_.emplace(initial.position);
-  begin_window(initial.t_ns, to_node(initial, *frame_, model_),
-               turned(initial.covariance, frame_->R_w_n(initial.position)));
+  context_.frame = LocalFrame(initial.position);
+  const Epoch whole = with_slow_blocks(initial, context_.layout);
+  slow_ = whole.slow;
+  begin_window(initial.t_ns, to_node(whole, context_),
+               turned(whole.covariance, context_.frame.R_w_n(whole.position)));
 }
 
 /// A window of one node.
-void WindowNavigator::begin_window(int64_t t_ns, const NodeState& x, const Matrix15d& covariance) {
+void WindowNavigator::begin_window(int64_t t_ns, const NodeState& x,
+                                   const StateMatrix& covariance) {
   nodes_.clear();
   intervals_.clear();
   Node& node = nodes_.emplace_back();
   node.t_ns = t_ns;
   node.x = x;
   covariance_ = covariance;
-  prior_ = prior_from_covariance(node.x, covariance_);
+  prior_ = prior_from_covariance(node.x, slow_, covariance_);
   linearize(0);
   begin_interval();
 }
 
-void WindowNavigator::loosen(const Matrix15d& added) {
-  const Prediction now = prediction();
-  const Eigen::Matrix3d R_w_n = frame_->R_w_n(frame_->to_geodetic(now.x.p_w_b));
-  begin_window(integrator_->t_end_ns(), now.x, now.covariance + turned(added, R_w_n));
+void WindowNavigator::loosen(const NodeMatrix& added) {
+  Prediction now = prediction();
+  const Eigen::Matrix3d R_w_n = context_.frame.R_w_n(context_.frame.to_geodetic(now.x.p_w_b));
+  node_part(now.covariance) += turned(added, R_w_n);
+  begin_window(integrator_->t_end_ns(), now.x, now.covariance);
 }
 
 std::unique_ptr<Navigator> WindowNavigator::ahead(double scale) const {
   const Prediction now = prediction();
-  auto copy = std::make_unique<WindowNavigator>(options_, model_, noise_);
-  copy->frame_ = frame_;
+  auto copy = std::make_unique<WindowNavigator>(options_, context_.model, noise_, context_.layout);
+  copy->context_.frame = context_.frame;
+  copy->slow_ = slow_;
+  copy->rates_ = rates_;
   copy->integrator_ = integrator_;  // for the increment before the first
   copy->begin_window(integrator_->t_end_ns(), now.x, scale * scale * now.covariance);
   return copy;
@@ -71,11 +81,13 @@ void WindowNavigator::begin_interval() {
   open_ = ImuInterval{};
   if (integrator_) open_.before = integrator_->previous();
   const Node& node = nodes_.back();
-  earth_ = earth_model(model_, *frame_, node.x.p_w_b);
-  integrator_.emplace(noise_, node.x.bias, node.t_ns, open_.before);
+  earth_ = earth_model(context_.model, context_.frame, node.x.p_w_b);
+  integrator_.emplace(noise_, node.x.bias, node.t_ns, open_.before,
+                      scale_of(context_.layout, slow_));
 }
 
 void WindowNavigator::propagate(const ImuIncrement& increment) {
+  rates_.add(increment);
   integrator_->add(increment);
   open_.increments.push_back(increment);
 }
@@ -84,43 +96,41 @@ WindowNavigator::Prediction WindowNavigator::prediction() const {
   const NodeState& x0 = nodes_.back().x;
   if (at_node()) return {x0, covariance_};
   const StageTimer timer(Stage::covariance);
-  const Preintegration pre = measured(*integrator_, model_);
-  const NodeState x1 = predict(x0, pre, earth_);
-  return {x1, predict_covariance(x0, x1, pre, earth_, covariance_)};
+  const Preintegration pre = measured(*integrator_, context_.model);
+  const NodeState x1 = predict(x0, pre, earth_, context_.layout.imu_scale(slow_));
+  return {x1, predict_covariance(x0, x1, pre, earth_, covariance_, context_.layout, slow_)};
 }
 
 Innovation WindowNavigator::innovation(const Observation& observation) const {
-  const GnssFix fix = dynamic_cast<const GnssPosition&>(observation).fix();
   const Prediction predicted = prediction();
-  const LocalFix local = to_local(fix, *frame_);
-  const Eigen::Matrix<double, 3, 15> H = antenna_jacobian(predicted.x, local);
-  const Eigen::Matrix3d R_n_w = frame_->R_w_n(fix.antenna).transpose();
-  const Eigen::Matrix3d S = H * predicted.covariance * H.transpose() + local.covariance_w;
-  return {R_n_w * antenna_innovation(predicted.x, local), R_n_w * S * R_n_w.transpose()};
+  const LocalNode local = to_nav(predicted.x, slow_, context_);
+  return innovation_of(observation.linearize(local.x, rates_.gyro_b, context_.layout),
+                       turned(predicted.covariance, local.R_n_w));
 }
 
 Epoch WindowNavigator::epoch() const {
   const Prediction now = prediction();
-  return to_epoch(integrator_->t_end_ns(), now.x, now.covariance, *frame_, model_);
+  return to_epoch(integrator_->t_end_ns(), now.x, slow_, now.covariance, context_);
 }
 
 void WindowNavigator::update(const ObservationPtr& observation) {
-  const GnssFix fix = dynamic_cast<const GnssPosition&>(*observation).fix();
   if (!at_node()) {
-    const Preintegration pre = measured(*integrator_, model_);
-    add_node(predict(nodes_.back().x, pre, earth_), pre);
+    const Preintegration pre = measured(*integrator_, context_.model);
+    add_node(predict(nodes_.back().x, pre, earth_, context_.layout.imu_scale(slow_)), pre);
   }
-  nodes_.back().fixes.emplace_back(to_local(fix, *frame_));
+  Node& node = nodes_.back();
+  node.observations.emplace_back(NodeObservation{observation, rates_.gyro_b}, node.x, slow_,
+                                 context_);
   solve();
   marginalize_old();
   begin_interval();  // at the bias just estimated
 }
 
-/// A node without a fix brings no information: there is nothing to solve.
+/// A node without an observation brings no information: there is nothing to solve.
 void WindowNavigator::hold() {
   if (at_node()) return;
   const Prediction now = prediction();
-  add_node(now.x, measured(*integrator_, model_));
+  add_node(now.x, measured(*integrator_, context_.model));
   linearize(nodes_.size() - 1);
   covariance_ = now.covariance;
   marginalize_old();
@@ -128,7 +138,7 @@ void WindowNavigator::hold() {
 }
 
 void WindowNavigator::add_node(const NodeState& x, const Preintegration& pre) {
-  open_.factor = std::make_unique<PreintegrationFactor>(pre, earth_);
+  open_.factor = std::make_unique<PreintegrationFactor>(pre, earth_, context_.layout);
   Node& node = nodes_.emplace_back();
   node.t_ns = pre.t_end_ns;
   node.x = x;
@@ -148,20 +158,21 @@ void WindowNavigator::solve() {
   covariance_ = covariance(nodes_.back().past.information);
 }
 
-/// Solves for the nodes from `from` on, and for the settled one before them.
+/// Solves for the nodes from `from` on, for the settled one before them, and for the border.
 void WindowNavigator::optimize(std::size_t from) {
   const StageTimer timer(Stage::solve);
   const std::size_t base = from > 0 ? from - 1 : 0;
-  PriorFactor prior(from > 0 ? to_prior(nodes_[base].past.information, nodes_[base].past.at)
-                             : prior_);
-  ChainProblem problem(nodes_[base].x, prior, loss_.get());
+  const Linearization& past = nodes_[base].past;
+  PriorFactor prior(from > 0 ? to_prior(past.information, past.at, past.slow) : prior_);
+  ChainProblem problem(nodes_[base].x, slow_, prior, loss_.get());
   for (std::size_t k = base; k < nodes_.size(); ++k) {
     if (k > base) problem.add_node(nodes_[k].x, *intervals_[k - 1].factor);
-    if (k < from) continue;  // its fixes are in the prior
-    for (GnssFactor& fix : nodes_[k].fixes) problem.add_fix(fix);
+    if (k < from) continue;  // its observations are in the prior
+    for (ObservationFactor& observation : nodes_[k].observations) problem.add(observation);
   }
   problem.optimize(options_);
   for (std::size_t k = base; k < nodes_.size(); ++k) nodes_[k].x = problem.state(k - base);
+  slow_ = problem.slow();
 }
 
 /// The quadratic forms of the nodes from `from` on, each at its present state.
@@ -169,24 +180,25 @@ void WindowNavigator::linearize(std::size_t from) {
   const StageTimer timer(Stage::marginalize);
   for (std::size_t k = from; k < nodes_.size(); ++k) {
     Node& node = nodes_[k];
-    node.past = {node.x, {}};
+    node.past = {node.x, slow_, NodeInformation(slow_.size())};
     if (k == 0) {
-      node.past.information.add(PriorFactor(prior_).linearize(node.x));
+      node.past.information.add(PriorFactor(prior_).linearize(node.x, slow_));
     } else {
       const Linearization& before = nodes_[k - 1].past;
       Interval& interval = intervals_[k - 1];
-      interval.elimination =
-          eliminate(before.information, interval.factor->linearize(before.at, node.x));
+      NodeInformation known = before.information;
+      known.move_border(slow_ - before.slow);
+      interval.elimination = eliminate(known, interval.factor->linearize(before.at, node.x, slow_));
       node.past.information = interval.elimination.rest;
     }
-    add_fixes(node);
+    add_observations(node);
   }
 }
 
-void WindowNavigator::add_fixes(Node& node) const {
-  for (const GnssFactor& factor : node.fixes) {
-    const GnssFactor::Linearized fix = factor.linearize(node.x);
-    node.past.information.add(fix, loss_weight(loss_.get(), fix));
+void WindowNavigator::add_observations(Node& node) const {
+  for (const ObservationFactor& observation : node.observations) {
+    const ObservationRows z = observation.linearize(node.x, slow_);
+    node.past.information.add(z, robust_cost(loss_.get(), z).weight);
   }
 }
 
@@ -194,24 +206,25 @@ void WindowNavigator::add_fixes(Node& node) const {
 void WindowNavigator::carry_back(std::size_t from) {
   const StageTimer timer(Stage::solve);
   if (from < 2) return;
-  const Node& base = nodes_[from - 1];
-  Vector15d d = boxminus(base.x, base.past.at);
+  StateVector d(kNodeSize + slow_.size());
+  d.head<kNodeSize>() = boxminus(nodes_[from - 1].x, nodes_[from - 1].past.at);
   for (std::size_t k = from - 1; k-- > 0;) {
-    d = intervals_[k].elimination.eliminated(d);
-    nodes_[k].x = boxplus(nodes_[k].past.at, d);
+    d.tail(slow_.size()) = slow_ - nodes_[k + 1].past.slow;
+    d.head<kNodeSize>() = intervals_[k].elimination.eliminated(d);
+    nodes_[k].x = boxplus(nodes_[k].past.at, NodeVector(d.head<kNodeSize>()));
   }
 }
 
 /// The first node whose quadratic form does not hold any more; the number of nodes if all do.
-/// Intervals whose bias has moved are integrated again.
+/// Intervals whose bias or scale has moved are integrated again.
 std::size_t WindowNavigator::first_unsettled() {
   const StageTimer timer(Stage::solve);
   std::size_t first = nodes_.size();
   for (std::size_t k = nodes_.size(); k-- > 0;) {
     const Node& node = nodes_[k];
-    if (k < intervals_.size() && bias_moved(intervals_[k].factor->preintegration(), node.x.bias)) {
+    if (k < intervals_.size() && has_turned(intervals_[k], node.x.bias, slow_)) {
       const StageTimer again(Stage::preintegrate);
-      reintegrate(intervals_[k], node.x.bias, noise_, model_);
+      reintegrate(intervals_[k], node.x.bias, slow_, noise_, context_);
       first = k + 1;
     }
     if (has_moved(node)) first = k;
@@ -221,18 +234,27 @@ std::size_t WindowNavigator::first_unsettled() {
 
 bool WindowNavigator::has_moved(const Node& node) const {
   if (node.x.q_w_b.angularDistance(node.past.at.q_w_b) > kSettled) return true;
-  if (!loss_) return false;
-  return std::any_of(node.fixes.begin(), node.fixes.end(), [&](const GnssFactor& fix) {
-    const Eigen::Vector3d change = fix.linearize(node.x).r - fix.linearize(node.past.at).r;
-    return change.norm() > kSettledResidual;
-  });
+  if (!loss_ && slow_.size() == 0) return false;
+  return std::any_of(node.observations.begin(), node.observations.end(),
+                     [&](const ObservationFactor& z) { return has_bent(z, node); });
+}
+
+/// Whether a residual is not what the quadratic form counts on: with a robust loss, whose weight is
+/// that of the residual, as it was; else, as its Jacobian says.
+bool WindowNavigator::has_bent(const ObservationFactor& observation, const Node& node) const {
+  const ObservationRows before = observation.linearize(node.past.at, node.past.slow);
+  const ObservationRows now = observation.linearize(node.x, slow_);
+  if (loss_) return (now.r - before.r).norm() > kSettledResidual;
+  StateVector d(kNodeSize + slow_.size());
+  d << boxminus(node.x, node.past.at), slow_ - node.past.slow;
+  return (now.r - before.r - before.J * d).norm() > kSettledResidual;
 }
 
 void WindowNavigator::marginalize_old() {
   const StageTimer timer(Stage::marginalize);
   while (nodes_.size() > 1 &&
          seconds_between(nodes_.front().t_ns, nodes_.back().t_ns) > options_.window_s) {
-    prior_ = to_prior(intervals_.front().elimination.rest, nodes_[1].past.at);
+    prior_ = to_prior(intervals_.front().elimination.rest, nodes_[1].past.at, nodes_[1].past.slow);
     nodes_.pop_front();
     intervals_.pop_front();
   }

@@ -5,13 +5,12 @@
 #include <Eigen/Dense>
 
 #include "foucault/fgo/window_navigator.h"
-#include "noisy_drive.h"
+#include "slow_drive.h"
 
 namespace foucault {
 namespace {
 
 using namespace testing;
-using namespace error_state;
 
 class BatchTest : public NoisyDrive {
  protected:
@@ -30,15 +29,19 @@ class BatchTest : public NoisyDrive {
 };
 
 /// A chain as a recorder would leave it, six nodes with fixes at all but two.
-struct ChainDrive : NoisyDrive {
+struct ChainDrive : SlowDrive {
+  explicit ChainDrive(const Layout& with = {})
+      : context{frame_, PreintegrationModel::refined, with} {}
   void TestBody() override {}
+
+  const GraphContext context;
 
   /// `integrated_at`: gyro bias of the preintegration. `keep`: the increments.
   BatchChain chain(double gyro_bias_sigma = 2e-4, const Vector3d& integrated_at = Vector3d::Zero(),
                    bool keep = false) {
     reseed(5);
     Epoch begin = initial(1);
-    begin.covariance.block<3, 3>(kGyroBias, kGyroBias) =
+    part(begin.covariance, block::gyro_bias, block::gyro_bias) =
         gyro_bias_sigma * gyro_bias_sigma * Matrix3d::Identity();
     NodeState x;
     x.p_w_b = frame_.to_local(begin.position);
@@ -46,10 +49,12 @@ struct ChainDrive : NoisyDrive {
     x.q_w_b = begin.q_n_b;
     x.bias = begin.bias;
     BatchChain out;
-    out.prior = prior_from_covariance(x, begin.covariance);
+    begin = with_slow_blocks(begin, context.layout);
+    out.prior = prior_from_covariance(x, begin.slow, begin.covariance);
     out.nodes.push_back({0, x, {}});
     for (int k = 0; k < 5; ++k) {
-      Preintegrator integrator(test_noise(), {integrated_at, x.bias.accel}, k * 1'000'000'000LL);
+      Preintegrator integrator(test_noise(), {integrated_at, x.bias.accel}, k * 1'000'000'000LL,
+                               std::nullopt, scale_of(context.layout, begin.slow));
       ImuInterval& interval = out.intervals.emplace_back();
       for (int64_t i = 0; i < 100; ++i) {
         const int64_t t = k * 1'000'000'000LL + i * 10'000'000;
@@ -57,67 +62,98 @@ struct ChainDrive : NoisyDrive {
         integrator.add(increment);
         if (keep) interval.increments.push_back(increment);
       }
-      interval.factor = std::make_unique<PreintegrationFactor>(integrator.result(), wuhan_earth());
+      interval.factor = std::make_unique<PreintegrationFactor>(integrator.result(), wuhan_earth(),
+                                                               context.layout);
       x = predict(x, integrator.result(), wuhan_earth());
       BatchNode& node = out.nodes.emplace_back();
       node.x = x;
-      if (k != 1 && k != 2) node.fixes.push_back(to_local(fix_at(k + 1, 0.02), frame_));
+      if (k == 1 || k == 2) continue;
+      node.observations.push_back({gnss_position(fix_at(k + 1, 0.02))});
+      if (context.layout.slow_index(kTemperature)) node.observations.push_back({range_at(k + 1)});
     }
     return out;
   }
 };
 
-/// The cost's gradient and Gauss-Newton matrix, dense.
+/// The cost's gradient and Gauss-Newton matrix, dense, the border behind.
 struct Dense {
+  Dense(const BatchChain& chain, const GraphContext& context, const BatchSolution& at)
+      : slow(at.slow.size()),
+        nodes(kNodeSize * static_cast<Eigen::Index>(at.x.size())),
+        H(Eigen::MatrixXd::Zero(nodes + slow, nodes + slow)),
+        gradient(Eigen::VectorXd::Zero(nodes + slow)) {
+    const StateRows prior = PriorFactor(chain.prior).linearize(at.x[0], at.slow);
+    add(0, prior.J, prior.r);
+    for (std::size_t k = 0; k < at.x.size(); ++k) {
+      const Eigen::Index own = kNodeSize * static_cast<Eigen::Index>(k);
+      for (const NodeObservation& observation : chain.nodes[k].observations) {
+        const ObservationRows z = linearize(observation, at.x[k], at.slow, context);
+        add(own, z.J, z.r);
+      }
+      if (k + 1 == at.x.size()) break;
+      const IntervalRows m = chain.intervals[k].factor->linearize(at.x[k], at.x[k + 1], at.slow);
+      Eigen::MatrixXd J(kNodeSize, 2 * kNodeSize + slow);
+      J << m.J_x0, m.J_x1, m.J_slow;
+      add(own, J, m.r);
+    }
+  }
+
+  /// Rows over the columns from `own` on, and the border.
+  void add(Eigen::Index own, const Eigen::MatrixXd& J, const Eigen::VectorXd& r) {
+    Eigen::MatrixXd whole = Eigen::MatrixXd::Zero(J.rows(), nodes + slow);
+    whole.middleCols(own, J.cols() - slow) = J.leftCols(J.cols() - slow);
+    whole.rightCols(slow) = J.rightCols(slow);
+    H += whole.transpose() * whole;
+    gradient += whole.transpose() * r;
+  }
+
+  Eigen::MatrixXd covariance() const {
+    // In units of sigmas, so that the dense inverse keeps its digits.
+    const Eigen::VectorXd scale = H.diagonal().cwiseSqrt().cwiseInverse();
+    const Eigen::MatrixXd scaled = scale.asDiagonal() * H * scale.asDiagonal();
+    return scale.asDiagonal() * scaled.inverse() * scale.asDiagonal();
+  }
+
+  /// Rows of a node and the border.
+  Eigen::VectorXi rows_of_node(std::size_t k) const {
+    const int own = kNodeSize * static_cast<int>(k);
+    Eigen::VectorXi rows(kNodeSize + slow);
+    rows << Eigen::VectorXi::LinSpaced(kNodeSize, own, own + kNodeSize - 1),
+        Eigen::VectorXi::LinSpaced(slow, static_cast<int>(nodes),
+                                   static_cast<int>(nodes + slow) - 1);
+    return rows;
+  }
+
+  Eigen::Index slow, nodes;
   Eigen::MatrixXd H;
   Eigen::VectorXd gradient;
 };
 
-Dense dense(const BatchChain& chain, const std::vector<NodeState>& x) {
-  const Eigen::Index n = 15 * static_cast<Eigen::Index>(x.size());
-  Dense out{Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n)};
-  const auto add = [&](Eigen::Index at, const Eigen::MatrixXd& J, const Eigen::VectorXd& r) {
-    out.H.block(at, at, J.cols(), J.cols()) += J.transpose() * J;
-    out.gradient.segment(at, J.cols()) += J.transpose() * r;
-  };
-  const PriorFactor::Linearized prior = PriorFactor(chain.prior).linearize(x[0]);
-  add(0, prior.J, prior.r);
-  for (std::size_t k = 0; k < x.size(); ++k) {
-    const Eigen::Index at = 15 * static_cast<Eigen::Index>(k);
-    for (const LocalFix& fix : chain.nodes[k].fixes) {
-      const GnssFactor::Linearized z = GnssFactor(fix).linearize(x[k]);
-      add(at, z.J, z.r);
-    }
-    if (k + 1 == x.size()) break;
-    const MotionResidual m = chain.intervals[k].factor->linearize(x[k], x[k + 1]);
-    Eigen::MatrixXd J(15, 30);
-    J << m.J_x0, m.J_x1;
-    add(at, J, m.r);
-  }
-  return out;
-}
-
-TEST(Batch, IsTheLeastSquaresSolutionWithItsCovariance) {
-  ChainDrive drive;
+void expect_least_squares(const Layout& layout) {
+  ChainDrive drive(layout);
   BatchChain chain = drive.chain();
   FgoOptions options;
   options.max_iterations = 50;
-  const BatchSolution solution = solve(chain, options, PreintegrationModel::refined, test_noise());
-  const Dense normal = dense(chain, solution.x);
-  // In units of sigmas, so that the dense inverse keeps its digits.
-  const Eigen::VectorXd scale = normal.H.diagonal().cwiseSqrt().cwiseInverse();
-  const Eigen::MatrixXd scaled = scale.asDiagonal() * normal.H * scale.asDiagonal();
-  const Eigen::MatrixXd covariance = scale.asDiagonal() * scaled.inverse() * scale.asDiagonal();
+  const BatchSolution solution = solve(chain, drive.context, options, test_noise());
+  const Dense normal(drive.chain(), drive.context, solution);  // the same once more
+  const Eigen::MatrixXd covariance = normal.covariance();
   const Eigen::VectorXd left = covariance * normal.gradient;
   const Eigen::VectorXd sigma = covariance.diagonal().cwiseSqrt();
   EXPECT_LT(left.cwiseQuotient(sigma).cwiseAbs().maxCoeff(), 1e-3);
   for (std::size_t k = 0; k < solution.x.size(); ++k) {
-    const Eigen::Index at = 15 * static_cast<Eigen::Index>(k);
-    const Vector15d unit = sigma.segment<15>(at).cwiseInverse();
-    const Matrix15d difference = solution.covariance_w[k] - covariance.block<15, 15>(at, at);
+    const Eigen::VectorXi rows = normal.rows_of_node(k);
+    const Eigen::VectorXd unit = sigma(rows).cwiseInverse();
+    const Eigen::MatrixXd difference = solution.covariance_w[k].full() - covariance(rows, rows);
     EXPECT_LT((unit.asDiagonal() * difference * unit.asDiagonal()).cwiseAbs().maxCoeff(), 1e-6)
         << "node " << k;
   }
+}
+
+TEST(Batch, IsTheLeastSquaresSolutionWithItsCovariance) { expect_least_squares({}); }
+
+TEST(Batch, IsTheLeastSquaresSolutionWithABorder) {
+  expect_least_squares(
+      Layout().add(kTemperature, 5).add(block::gyro_scale, 3e-3).add(block::accel_scale, 3e-3));
 }
 
 TEST(Batch, ABiasThatMovedIsIntegratedAnew) {
@@ -128,14 +164,14 @@ TEST(Batch, ABiasThatMovedIsIntegratedAnew) {
   options.max_iterations = 50;
   const auto solved = [&](const Vector3d& integrated_at, bool keep) {
     BatchChain chain = drive.chain(0.05, integrated_at, keep);
-    return solve(chain, options, PreintegrationModel::refined, test_noise());
+    return solve(chain, drive.context, options, test_noise());
   };
   const BatchSolution near = solved(Vector3d::Zero(), true);
   const auto off = [&](const BatchSolution& other) {
     double worst = 0;
     for (std::size_t k = 0; k < near.x.size(); ++k) {
-      const Vector15d sigma = near.covariance_w[k].diagonal().cwiseSqrt();
-      const Vector15d difference = boxminus(other.x[k], near.x[k]).cwiseQuotient(sigma);
+      const NodeVector sigma = near.covariance_w[k].full().diagonal().cwiseSqrt();
+      const NodeVector difference = boxminus(other.x[k], near.x[k]).cwiseQuotient(sigma);
       worst = std::max(worst, difference.cwiseAbs().maxCoeff());
     }
     return worst;
@@ -155,9 +191,9 @@ TEST_F(BatchTest, EndsWhereAWindowOverEverythingEnds) {
   run(*batch, 25, 10, 15, [](int) {});
   const std::vector<SmoothedEpoch> nodes = batch->smoothed();
   ASSERT_EQ(nodes.size(), 26u);
-  const Epoch a = nodes.back().epoch;
+  const Epoch a = nodes.back().epoch();
   const Epoch b = window.epoch();
-  const Vector15d sigma = b.covariance.diagonal().cwiseSqrt();
+  const NodeVector sigma = b.covariance.diagonal().cwiseSqrt();
   EXPECT_LT((error(a) - error(b)).cwiseQuotient(sigma).cwiseAbs().maxCoeff(), 1e-2);
   EXPECT_LT(
       (a.covariance.diagonal().cwiseSqrt() - sigma).cwiseQuotient(sigma).cwiseAbs().maxCoeff(),
@@ -176,11 +212,11 @@ TEST_F(BatchTest, ErrorsInAnOutageStayWithinTheirCovarianceAndBelowForward) {
       if (second == 25) forward = batch->epoch();
     });
     const std::vector<SmoothedEpoch> nodes = batch->smoothed();
-    const Vector15d e = error(nodes[20].epoch);
-    nees_sum += e.dot(nodes[20].epoch.covariance.ldlt().solve(e));
-    smoothed_square += error(nodes[20].epoch).head<2>().squaredNorm();
+    const NodeVector e = error(nodes[20].epoch());
+    nees_sum += e.dot(nodes[20].epoch().covariance.ldlt().solve(e));
+    smoothed_square += error(nodes[20].epoch()).head<2>().squaredNorm();
     forward_square += error(forward).head<2>().squaredNorm();
-    const Vector15d variance = nodes[25].epoch.covariance.diagonal();
+    const NodeVector variance = nodes[25].epoch().covariance.diagonal();
     EXPECT_LT(variance.head<3>().sum(), forward.covariance.diagonal().head<3>().sum());
   }
   // Sum of kRuns chi-squares of 15; 99.9 %.
@@ -197,12 +233,8 @@ TEST_F(BatchTest, WhatItFoundInTheForwardRunPutsItRight) {
     if (second == 13) forward = batch->epoch();
   });
   const SmoothedEpoch node = batch->smoothed()[13];
-  const StrapdownState state{forward.t_ns, forward.position, forward.velocity_n, forward.q_n_b};
-  const StrapdownState right = corrected(state, node.after.head<9>());
-  EXPECT_LT(displacement_n(right.position, node.epoch.position, Place(right.position)).norm(),
-            1e-6);
-  EXPECT_LT((right.v_n - node.epoch.velocity_n).norm(), 1e-9);
-  EXPECT_LT(right.q_n_b.angularDistance(node.epoch.q_n_b), 1e-9);
+  const NavState right = boxplus(forward, node.after);
+  EXPECT_LT(boxminus(node.state, right).norm(), 1e-8);
   EXPECT_GT(node.after.head<3>().norm(), 1e-3);
 }
 
@@ -218,7 +250,7 @@ TEST_F(BatchTest, ANewStartIsANewChain) {
   const std::vector<SmoothedEpoch> nodes = batch->smoothed();
   ASSERT_EQ(nodes.size(), 2 * before);
   for (std::size_t k = 0; k < before; ++k) {
-    EXPECT_LT((error(nodes[k].epoch) - error(nodes[before + k].epoch)).norm(), 1e-6);
+    EXPECT_LT((error(nodes[k].epoch()) - error(nodes[before + k].epoch())).norm(), 1e-6);
   }
 }
 
@@ -236,17 +268,17 @@ TEST_F(BatchTest, LooseningBridgesAJumpOfTheState) {
       GnssFix fix = fix_at(second, 0.02);
       if (second > 10) fix.antenna = LocalFrame(fix.antenna).to_geodetic({5, 0, 0});
       if (second == 11 && loosened) {
-        Matrix15d added = Matrix15d::Zero();
+        NodeMatrix added = NodeMatrix::Zero();
         added.diagonal().head<3>().setConstant(25);
         batch->loosen(added);
       }
-      batch->update(fix);
+      batch->update(gnss_position(fix));
       fixes.push_back(fix);
     }
     const std::vector<SmoothedEpoch> nodes = batch->smoothed();
     double largest = 0;
     for (std::size_t k = 0; k < fixes.size(); ++k) {
-      const Epoch& epoch = nodes[k + 1].epoch;
+      const Epoch epoch = nodes[k + 1].epoch();
       const Vector3d antenna_n = LocalFrame(epoch.position).to_local(fixes[k].antenna);
       largest = std::max(largest, (antenna_n - epoch.q_n_b * fixes[k].p_b_a).norm());
     }

@@ -9,117 +9,166 @@
 namespace foucault {
 namespace {
 
-Matrix15d random_matrix(std::mt19937& rng) {
+Eigen::MatrixXd random_matrix(std::mt19937& rng, Eigen::Index rows, Eigen::Index columns) {
   std::normal_distribution<double> normal;
-  Matrix15d M;
+  Eigen::MatrixXd M(rows, columns);
   for (double& m : M.reshaped()) m = normal(rng);
   return M;
 }
 
-Vector15d random_vector(std::mt19937& rng) { return random_matrix(rng).col(0); }
-
-/// A chain of four nodes, as a dense least-squares problem and by elimination.
-class Chain : public ::testing::Test {
+/// A chain of four nodes and a border of so many rows, as a dense least-squares problem and by
+/// elimination.
+class Chain : public ::testing::TestWithParam<int> {
  protected:
   static constexpr int kNodes = 4;
 
-  Chain() {
-    first_ = {random_vector(rng_), random_matrix(rng_)};
-    for (int i = 0; i + 1 < kNodes; ++i)
-      intervals_.push_back({random_vector(rng_), random_matrix(rng_), random_matrix(rng_)});
-    const int rows = 15 * kNodes;
-    J_ = Eigen::MatrixXd::Zero(rows, 15 * kNodes);
-    r_ = Eigen::VectorXd::Zero(rows);
-    J_.block<15, 15>(0, 0) = first_.J;
-    r_.head<15>() = first_.r;
+  Chain() : J_(0, kNodeSize * kNodes + slow()), r_(0) {
+    const Eigen::Index size = kNodeSize + slow();
+    first_ = {random_matrix(rng_, size, 1), random_matrix(rng_, size, size)};
+    add_rows(0, kNodeSize, first_.J, first_.r);
     for (int i = 0; i + 1 < kNodes; ++i) {
-      J_.block<15, 15>(15 * (i + 1), 15 * i) = intervals_[i].J_x0;
-      J_.block<15, 15>(15 * (i + 1), 15 * (i + 1)) = intervals_[i].J_x1;
-      r_.segment<15>(15 * (i + 1)) = intervals_[i].r;
+      intervals_.push_back(
+          {random_matrix(rng_, kNodeSize, 1), random_matrix(rng_, kNodeSize, kNodeSize),
+           random_matrix(rng_, kNodeSize, kNodeSize), random_matrix(rng_, kNodeSize, slow())});
+      const IntervalRows& m = intervals_.back();
+      Eigen::MatrixXd J(kNodeSize, 2 * kNodeSize + slow());
+      J << m.J_x0, m.J_x1, m.J_slow;
+      add_rows(kNodeSize * i, 2 * kNodeSize, J, m.r);
+      observations_.push_back({random_matrix(rng_, 2, 1), random_matrix(rng_, 2, size)});
+      add_rows(kNodeSize * (i + 1), kNodeSize, observations_[i].J, observations_[i].r);
     }
   }
 
-  NodeInformation eliminated() const {
-    NodeInformation info;
+  Eigen::Index slow() const { return GetParam(); }
+
+  /// Rows over `own` columns from `at` on, and the border.
+  void add_rows(Eigen::Index at, Eigen::Index own, const Eigen::MatrixXd& J,
+                const Eigen::VectorXd& r) {
+    const Eigen::Index row = r_.size();
+    J_.conservativeResize(row + r.size(), Eigen::NoChange);
+    J_.bottomRows(r.size()).setZero();
+    J_.block(row, at, r.size(), own) = J.leftCols(own);
+    J_.bottomRightCorner(r.size(), slow()) = J.rightCols(slow());
+    r_.conservativeResize(row + r.size());
+    r_.tail(r.size()) = r;
+  }
+
+  NodeInformation start() const {
+    NodeInformation info(slow());
     info.add(first_);
-    for (const MotionResidual& interval : intervals_) info = eliminate(info, interval).rest;
     return info;
   }
 
+  Elimination step(const NodeInformation& info, int i) const {
+    Elimination elimination = eliminate(info, intervals_[i]);
+    elimination.rest.add(observations_[i]);
+    return elimination;
+  }
+
+  NodeInformation eliminated() const {
+    NodeInformation info = start();
+    for (int i = 0; i + 1 < kNodes; ++i) info = step(info, i).rest;
+    return info;
+  }
+
+  Eigen::VectorXd dense_solution() const { return -J_.colPivHouseholderQr().solve(r_); }
+  Eigen::MatrixXd dense_covariance() const { return (J_.transpose() * J_).inverse(); }
+
   std::mt19937 rng_{5};
-  PriorFactor::Linearized first_;
-  std::vector<MotionResidual> intervals_;
+  StateRows first_;
+  std::vector<IntervalRows> intervals_;
+  std::vector<ObservationRows> observations_;  ///< one a node but the first
   Eigen::MatrixXd J_;
   Eigen::VectorXd r_;
 };
+INSTANTIATE_TEST_SUITE_P(WithoutAndWithABorder, Chain, ::testing::Values(0, 1, 6, kMostSlow));
 
-TEST_F(Chain, CovarianceOfTheLastNodeIsTheDenseOne) {
-  const Eigen::MatrixXd P = (J_.transpose() * J_).inverse();
-  const Matrix15d expected = P.bottomRightCorner<15, 15>();
+TEST_P(Chain, CovarianceOfTheLastNodeAndTheBorderIsTheDenseOne) {
+  const Eigen::Index size = kNodeSize + slow();
+  const Eigen::MatrixXd expected = dense_covariance().bottomRightCorner(size, size);
   EXPECT_LT((covariance(eliminated()) - expected).norm(), 1e-8 * expected.norm());
 }
 
-TEST_F(Chain, SolutionOfTheLastNodeIsTheDenseOne) {
-  const Eigen::VectorXd d = -J_.colPivHouseholderQr().solve(r_);
-  const NodeInformation info = eliminated();
-  const Vector15d last = -info.S.colPivHouseholderQr().solve(info.r);
-  EXPECT_LT((last - d.tail<15>()).norm(), 1e-8 * d.norm());
+TEST_P(Chain, SolutionOfTheLastNodeAndTheBorderIsTheDenseOne) {
+  const Eigen::VectorXd d = dense_solution();
+  EXPECT_LT((eliminated().solution() - d.tail(kNodeSize + slow())).norm(), 1e-8 * d.norm());
 }
 
-TEST_F(Chain, EliminatedNodesFollowTheLast) {
-  const Eigen::VectorXd dense = -J_.colPivHouseholderQr().solve(r_);
+/// The solutions and covariances of the others, each with the border.
+TEST_P(Chain, EliminatedNodesFollowTheLast) {
+  const Eigen::VectorXd dense = dense_solution();
+  const Eigen::MatrixXd dense_P = dense_covariance();
   std::vector<Elimination> steps;
-  NodeInformation info;
-  info.add(first_);
-  for (const MotionResidual& interval : intervals_) {
-    steps.push_back(eliminate(info, interval));
+  NodeInformation info = start();
+  for (int i = 0; i + 1 < kNodes; ++i) {
+    steps.push_back(step(info, i));
     info = steps.back().rest;
   }
-  Vector15d d = dense.tail<15>();
+  StateVector d = info.solution();
+  StateMatrix P = covariance(info);
   for (int k = kNodes - 1; k-- > 0;) {
-    d = steps[k].eliminated(d);
-    EXPECT_LT((d - dense.segment<15>(15 * k)).norm(), 1e-8 * dense.norm()) << "node " << k;
+    d.head<kNodeSize>() = steps[k].eliminated(d);
+    P = steps[k].covariance(P);
+    EXPECT_LT((d.head<kNodeSize>() - dense.segment<kNodeSize>(kNodeSize * k)).norm(),
+              1e-8 * dense.norm())
+        << "node " << k;
+    Eigen::VectorXi rows(P.rows());
+    rows << Eigen::VectorXi::LinSpaced(kNodeSize, kNodeSize * k, kNodeSize * (k + 1) - 1),
+        Eigen::VectorXi::LinSpaced(slow(), kNodeSize * kNodes, kNodeSize * kNodes + GetParam() - 1);
+    EXPECT_LT((P - dense_P(rows, rows)).norm(), 1e-8 * P.norm()) << "node " << k;
   }
 }
 
-TEST_F(Chain, InformationAddsUp) {
-  NodeInformation info;
-  info.add(first_);
-  GnssFactor::Linearized fix;
-  fix.r = random_vector(rng_).head<3>();
-  fix.J = random_matrix(rng_).topRows<3>();
-  constexpr double kWeight = 0.3;
-  info.add(fix, kWeight);
-  const Matrix15d H = first_.J.transpose() * first_.J + kWeight * fix.J.transpose() * fix.J;
-  const Vector15d b = first_.J.transpose() * first_.r + kWeight * fix.J.transpose() * fix.r;
-  EXPECT_LT((info.S.transpose() * info.S - H).norm(), 1e-12 * H.norm());
-  EXPECT_LT((info.S.transpose() * info.r - b).norm(), 1e-12 * b.norm());
+TEST_P(Chain, InformationAddsUp) {
+  NodeInformation info = start();
+  for (const int rows : {1, 2, 3, 6}) {
+    const NodeInformation before = info;
+    const ObservationRows z{random_matrix(rng_, rows, 1),
+                            random_matrix(rng_, rows, kNodeSize + slow())};
+    constexpr double kWeight = 0.3;
+    info.add(z, kWeight);
+    const Eigen::MatrixXd H = before.S.transpose() * before.S + kWeight * z.J.transpose() * z.J;
+    const Eigen::VectorXd b = before.S.transpose() * before.r + kWeight * z.J.transpose() * z.r;
+    EXPECT_LT((info.S.transpose() * info.S - H).norm(), 1e-12 * H.norm());
+    EXPECT_LT((info.S.transpose() * info.r - b).norm(), 1e-12 * b.norm());
+  }
+}
+
+TEST_P(Chain, TheBorderMayBeCountedFromElsewhere) {
+  NodeInformation info = eliminated();
+  const StateVector before = info.solution();
+  const SlowVector moved = random_matrix(rng_, slow(), 1);
+  info.move_border(moved);
+  const StateVector after = info.solution();
+  EXPECT_LT((after.head<kNodeSize>() - before.head<kNodeSize>()).norm(), 1e-9 * before.norm());
+  EXPECT_LT((after.tail(slow()) + moved - before.tail(slow())).norm(), 1e-9 * before.norm());
 }
 
 /// An hour of steps known to 0.1 mm, from a place known to 1000 km: 1e-20 of the intervals'
 /// information, which no normal equation holds. Then a fix of 1 cm.
 TEST(ChainOfAnOutage, KeepsWhatLittleIsKnown) {
-  MotionResidual step;
+  IntervalRows step;
   step.r.setZero();
-  step.J_x1 = 1e4 * Matrix15d::Identity();
+  step.J_slow = NodeBySlow(kNodeSize, 0);
+  step.J_x1 = 1e4 * NodeMatrix::Identity();
   step.J_x0 = -step.J_x1;
   NodeInformation info;
-  info.S = 1e-6 * Matrix15d::Identity();
+  info.S = 1e-6 * NodeMatrix::Identity();
   constexpr int kSteps = 3600;
   for (int i = 0; i < kSteps; ++i) info = eliminate(info, step).rest;
-  const Vector15d variance = covariance(info).diagonal();
+  const NodeVector variance = covariance(info).diagonal();
   EXPECT_LT((variance.array() / (1e12 + kSteps * 1e-8) - 1).abs().maxCoeff(), 1e-9);
-  GnssFactor::Linearized fix;
-  fix.r.setZero();
-  fix.J = 100 * Eigen::Matrix<double, 3, 15>::Identity();
+  const ObservationRows fix{Eigen::Vector3d::Zero(),
+                            100 * Eigen::Matrix<double, 3, kNodeSize>::Identity()};
   info.add(fix);
-  const Vector15d after = covariance(info).diagonal();
+  const NodeVector after = covariance(info).diagonal();
   EXPECT_LT((after.head<3>().array() / 1e-4 - 1).abs().maxCoeff(), 1e-9);
   EXPECT_LT((after.tail<12>() - variance.tail<12>()).norm(), 1e-9 * variance.norm());
 }
 
-TEST_F(Chain, AnUndeterminedNodeIsAnError) {
-  MotionResidual nothing;
+TEST(ChainOfNothing, AnUndeterminedNodeIsAnError) {
+  IntervalRows nothing;
+  nothing.J_slow = NodeBySlow(kNodeSize, 0);
   nothing.J_x0.setZero();
   nothing.J_x1.setZero();
   nothing.r.setZero();

@@ -10,12 +10,13 @@
 #include "foucault/fgo/fgo_options.h"
 #include "foucault/geodesy/local_frame.h"
 #include "foucault/inertial/navigator.h"
+#include "foucault/measurement/gnss_position.h"
+#include "foucault/preintegration/motion.h"
 
 namespace foucault::testing {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
-using namespace error_state;
 
 inline constexpr double kDegree = M_PI / 180;
 inline const Geodetic kOrigin{30.45 * kDegree, 114.47 * kDegree, 20};
@@ -46,9 +47,9 @@ class NoisyDrive : public ::testing::Test {
 
   Epoch initial(double scale) {
     const NodeState x = motion_.state(0);
-    const Vector15d sigma = initial_sigma();
-    Vector15d error;
-    for (int i = 0; i < 15; ++i) error[i] = scale * sigma[i] * normal_(rng_);
+    const NodeVector sigma = initial_sigma();
+    NodeVector error;
+    for (int i = 0; i < kNodeSize; ++i) error[i] = scale * sigma[i] * normal_(rng_);
     const NodeState start = boxplus(x, error);
     Epoch epoch;
     epoch.position = frame_.to_geodetic(start.p_w_b);
@@ -59,8 +60,8 @@ class NoisyDrive : public ::testing::Test {
     return epoch;
   }
 
-  static Vector15d initial_sigma() {
-    Vector15d sigma;
+  static NodeVector initial_sigma() {
+    NodeVector sigma;
     sigma << Vector3d::Constant(0.05), Vector3d::Constant(0.05), Vector3d(5e-3, 5e-3, 2e-2),
         Vector3d::Constant(2e-4), Vector3d::Constant(1e-2);
     return sigma;
@@ -95,12 +96,12 @@ class NoisyDrive : public ::testing::Test {
       if (second >= outage_begin && second < outage_end)
         navigator.hold();
       else
-        navigator.update(fix_at(second, 0.02));
+        navigator.update(gnss_position(fix_at(second, 0.02)));
       each(second);
     }
   }
 
-  Vector15d error(const Epoch& epoch) const {
+  NodeVector error(const Epoch& epoch) const {
     NodeState x;
     const Matrix3d R_w_n = frame_.R_w_n(epoch.position);
     x.p_w_b = frame_.to_local(epoch.position);

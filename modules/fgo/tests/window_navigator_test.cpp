@@ -2,13 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include "cartesian_fix.h"
 #include "noisy_drive.h"
 
 namespace foucault {
 namespace {
 
 using namespace testing;
-using namespace error_state;
 
 class WindowNavigatorTest : public NoisyDrive {};
 
@@ -21,7 +21,7 @@ TEST_F(WindowNavigatorTest, ErrorsStayWithinTheirCovariance) {
     navigator.start(initial(1));
     run(navigator, 30, 20, 28, [&](int) {});
     const Epoch last = navigator.epoch();
-    const Vector15d e = error(last);
+    const NodeVector e = error(last);
     nees_sum += e.dot(last.covariance.ldlt().solve(e));
     ++count;
   }
@@ -45,8 +45,8 @@ TEST_F(WindowNavigatorTest, MarginalizedWindowIsTheBatch) {
   // order in it: a hundredth of a sigma; and nothing in the covariance.
   const Epoch a = window.epoch();
   const Epoch b = batch.epoch();
-  const Vector15d sigma = b.covariance.diagonal().cwiseSqrt();
-  const Vector15d difference = error(a) - error(b);
+  const NodeVector sigma = b.covariance.diagonal().cwiseSqrt();
+  const NodeVector difference = error(a) - error(b);
   EXPECT_LT(difference.cwiseQuotient(sigma).cwiseAbs().maxCoeff(), 1e-2);
   EXPECT_LT(
       (a.covariance.diagonal().cwiseSqrt() - sigma).cwiseQuotient(sigma).cwiseAbs().maxCoeff(),
@@ -56,7 +56,7 @@ TEST_F(WindowNavigatorTest, MarginalizedWindowIsTheBatch) {
 /// Iterated EKF on the same models, in covariance form with textbook formulas.
 class IteratedEkf {
  public:
-  IteratedEkf(const NodeState& x, const Matrix15d& P, const EarthModel& earth)
+  IteratedEkf(const NodeState& x, const NodeMatrix& P, const EarthModel& earth)
       : x_(x), P_(P), earth_(earth) {}
 
   void predict(const Preintegration& pre) {
@@ -65,30 +65,31 @@ class IteratedEkf {
     x_ = next;
   }
 
-  void update(const LocalFix& fix) {
+  void update(const CartesianFix& fix) {
     const NodeState prior = x_;
-    Eigen::Matrix<double, 3, 15> H;
-    Eigen::Matrix<double, 15, 3> K;
-    Matrix15d at_prior = Matrix15d::Identity();
+    Eigen::Matrix<double, 3, kNodeSize> H;
+    Eigen::Matrix<double, kNodeSize, 3> K;
+    NodeMatrix at_prior = NodeMatrix::Identity();
     for (int i = 0; i < 10; ++i) {
-      const Vector15d moved = boxminus(x_, prior);
+      const NodeVector moved = boxminus(x_, prior);
       // Prior covariance in the tangent of the current iterate.
-      at_prior.block<3, 3>(kAttitude, kAttitude) = so3::right_jacobian(moved.segment<3>(kAttitude));
-      const Matrix15d P = at_prior * P_ * at_prior.transpose();
+      part(at_prior, block::attitude, block::attitude) =
+          so3::right_jacobian(part(moved, block::attitude));
+      const NodeMatrix P = at_prior * P_ * at_prior.transpose();
       H = antenna_jacobian(x_, fix);
       K = P * H.transpose() * (H * P * H.transpose() + fix.covariance_w).inverse();
-      const Vector15d back = at_prior * moved;
+      const NodeVector back = at_prior * moved;
       x_ = boxplus(x_, K * (antenna_innovation(x_, fix) + H * back) - back);
     }
-    P_ = (Matrix15d::Identity() - K * H) * (at_prior * P_ * at_prior.transpose());
+    P_ = (NodeMatrix::Identity() - K * H) * (at_prior * P_ * at_prior.transpose());
   }
 
   const NodeState& x() const { return x_; }
-  const Matrix15d& P() const { return P_; }
+  const NodeMatrix& P() const { return P_; }
 
  private:
   NodeState x_;
-  Matrix15d P_;
+  NodeMatrix P_;
   EarthModel earth_;
 };
 
@@ -111,11 +112,11 @@ TEST_F(WindowNavigatorTest, OneStateWindowIsAnIteratedEkf) {
     const ImuIncrement increment = noisy_increment(k * 10'000'000LL, (k + 1) * 10'000'000LL);
     const GnssFix fix = fix_at(0.01 * (k + 1), 0.02);
     navigator.propagate(increment);
-    navigator.update(fix);
+    navigator.update(gnss_position(fix));
     Preintegrator pre(test_noise(), ekf.x().bias, increment.t_begin_ns, before);
     pre.add(increment);
     ekf.predict(pre.result());
-    ekf.update(to_local(fix, frame));
+    ekf.update(cartesian(fix, frame));
     before = increment;
     ASSERT_EQ(navigator.nodes(), 1u);
   }
@@ -126,10 +127,10 @@ TEST_F(WindowNavigatorTest, OneStateWindowIsAnIteratedEkf) {
   window.v_w_b = R_w_n * end.velocity_n;
   window.q_w_b = Eigen::Quaterniond(R_w_n) * end.q_n_b;
   window.bias = end.bias;
-  const Vector15d sigma = ekf.P().diagonal().cwiseSqrt();
-  const Vector15d difference = boxminus(window, ekf.x()).cwiseQuotient(sigma);
+  const NodeVector sigma = ekf.P().diagonal().cwiseSqrt();
+  const NodeVector difference = boxminus(window, ekf.x()).cwiseQuotient(sigma);
   EXPECT_LT(difference.cwiseAbs().maxCoeff(), 0.01) << difference.transpose();
-  const Vector15d window_sigma = end.covariance.diagonal().cwiseSqrt();
+  const NodeVector window_sigma = end.covariance.diagonal().cwiseSqrt();
   EXPECT_LT((window_sigma - sigma).cwiseQuotient(sigma).cwiseAbs().maxCoeff(), 0.01);
 }
 
@@ -144,7 +145,7 @@ TEST_F(WindowNavigatorTest, RoughLosesWhatTheEarthTurns) {
     noise.gyro_bias_sigma = 1e-7;  // a gyro so stable that it cannot hide the Earth
     WindowNavigator navigator(window_of(20), model, noise);
     Epoch begin = initial(0);
-    begin.covariance.block<3, 3>(kGyroBias, kGyroBias) = 1e-12 * Matrix3d::Identity();
+    part(begin.covariance, block::gyro_bias, block::gyro_bias) = 1e-12 * Matrix3d::Identity();
     navigator.start(begin);
     run(navigator, 80, 20, 81, [](int) {});
     drift[which++] = error(navigator.epoch()).head<2>().norm();
@@ -165,7 +166,7 @@ TEST_F(WindowNavigatorTest, RobustLossShrugsOffAnOutlier) {
     navigator.propagate(noisy_increment(30'000'000'000, 30'010'000'000));
     GnssFix outlier = fix_at(30.01, 0.02);
     outlier.antenna.height += 10;
-    navigator.update(outlier);
+    navigator.update(gnss_position(outlier));
     error_with[which++] = error(navigator.epoch()).head<3>().norm();
   }
   EXPECT_GT(error_with[0], 0.3);
@@ -176,14 +177,15 @@ TEST_F(WindowNavigatorTest, PredictsBetweenNodes) {
   WindowNavigator navigator(window_of(10), PreintegrationModel::refined, test_noise());
   navigator.start(initial(0.1));
   run(navigator, 15, 99, 99, [](int) {});
-  const double before = navigator.epoch().covariance(kPosition, kPosition);
+  const double before =
+      navigator.epoch().covariance(block::position.offset, block::position.offset);
   for (int k = 0; k < 50; ++k)
     navigator.propagate(noisy_increment(15'000'000'000 + k * 10'000'000LL,
                                         15'000'000'000 + (k + 1) * 10'000'000LL));
   const Epoch half = navigator.epoch();
   EXPECT_EQ(half.t_ns, 15'500'000'000);
   EXPECT_LT(error(half).head<3>().norm(), 0.1);
-  EXPECT_GT(half.covariance(kPosition, kPosition), before);
+  EXPECT_GT(half.covariance(block::position.offset, block::position.offset), before);
 }
 
 TEST_F(WindowNavigatorTest, InnovationIsWhiteWithItsCovariance) {
@@ -196,10 +198,10 @@ TEST_F(WindowNavigatorTest, InnovationIsWhiteWithItsCovariance) {
     for (int64_t t = (second - 1) * 100LL; t < second * 100LL; ++t)
       navigator.propagate(noisy_increment(t * 10'000'000, (t + 1) * 10'000'000));
     const GnssFix fix = fix_at(second, 0.02);
-    const Innovation innovation = navigator.innovation(fix);
-    nis += innovation.value_n.dot(innovation.covariance.ldlt().solve(innovation.value_n));
+    const Innovation innovation = navigator.innovation(*gnss_position(fix));
+    nis += innovation.value.dot(innovation.covariance.ldlt().solve(innovation.value));
     ++count;
-    navigator.update(fix);
+    navigator.update(gnss_position(fix));
   }
   EXPECT_NEAR(nis, 3.0 * count, 3.3 * std::sqrt(2 * 3.0 * count));
 }
@@ -215,7 +217,7 @@ TEST_F(WindowNavigatorTest, ConvergesFromAttitudesFarOff) {
     Epoch begin = initial(1);
     const Vector3d sigma(0.1, 0.1, 0.4);
     begin.q_n_b = begin.q_n_b * so3::exp(draw(1).cwiseProduct(sigma));
-    begin.covariance.block<3, 3>(kAttitude, kAttitude).diagonal() += sigma.cwiseAbs2();
+    part(begin.covariance, block::attitude, block::attitude).diagonal() += sigma.cwiseAbs2();
     WindowNavigator navigator(window_of(10), PreintegrationModel::refined, noise);
     navigator.start(begin);
     for (int second = 1; second <= 20; ++second) {
@@ -223,12 +225,12 @@ TEST_F(WindowNavigatorTest, ConvergesFromAttitudesFarOff) {
       for (int64_t t = begin_ns; t < begin_ns + 1'000'000'000LL; t += 10'000'000) {
         navigator.propagate(motion_.increment(t, t + 10'000'000));
       }
-      navigator.update(fix_at(second, 0.02));
-      const Vector15d e = error(navigator.epoch());
+      navigator.update(gnss_position(fix_at(second, 0.02)));
+      const NodeVector e = error(navigator.epoch());
       if (second < 5) continue;  // the lever arm turns with the attitude
-      EXPECT_LT(e.segment<3>(kPosition).norm(), 0.15) << seed << " " << second;
+      EXPECT_LT(part(e, block::position).norm(), 0.15) << seed << " " << second;
     }
-    EXPECT_LT(error(navigator.epoch()).segment<3>(kAttitude).norm(), 0.02) << seed;
+    EXPECT_LT(part(error(navigator.epoch()), block::attitude).norm(), 0.02) << seed;
   }
 }
 
@@ -238,7 +240,7 @@ TEST_F(WindowNavigatorTest, ALargeBiasIsIntegratedAnew) {
   reseed(8);
   WindowNavigator navigator(window_of(10), PreintegrationModel::refined, test_noise());
   Epoch begin = initial(0.1);
-  begin.covariance.block<3, 3>(kGyroBias, kGyroBias) = 0.0025 * Matrix3d::Identity();
+  part(begin.covariance, block::gyro_bias, block::gyro_bias) = 0.0025 * Matrix3d::Identity();
   const Vector3d bias(0.05, -0.03, 0.04);
   navigator.start(begin);
   for (int second = 1; second <= 30; ++second) {
@@ -247,11 +249,11 @@ TEST_F(WindowNavigatorTest, ALargeBiasIsIntegratedAnew) {
       increment.dtheta_b += bias * increment.dt();
       navigator.propagate(increment);
     }
-    navigator.update(fix_at(second, 0.02));
+    navigator.update(gnss_position(fix_at(second, 0.02)));
   }
   const Epoch end = navigator.epoch();
   EXPECT_LT((end.bias.gyro - bias).norm(), 3e-4);
-  const Vector15d e = error(end);
+  const NodeVector e = error(end);
   EXPECT_LT(e.head<3>().norm(), 0.1);
 }
 
@@ -269,17 +271,18 @@ TEST_F(WindowNavigatorTest, OneAheadForeseesWhatItselfWillSay) {
       n->propagate(increment);
     }
   }
-  const GnssFix fix = fix_at(14, 0.02);
-  const Innovation own = navigator.innovation(fix);
-  EXPECT_LT((ahead->innovation(fix).value_n - own.value_n).norm(), 1e-6);
-  EXPECT_LT((ahead->innovation(fix).covariance - own.covariance).norm(),
+  const ObservationPtr fix = gnss_position(fix_at(14, 0.02));
+  const Innovation own = navigator.innovation(*fix);
+  EXPECT_LT((ahead->innovation(*fix).value - own.value).norm(), 1e-6);
+  EXPECT_LT((ahead->innovation(*fix).covariance - own.covariance).norm(),
             1e-6 * own.covariance.norm());
-  EXPECT_LT((doubtful->innovation(fix).value_n - own.value_n).norm(), 1e-6);
+  EXPECT_LT((doubtful->innovation(*fix).value - own.value).norm(), 1e-6);
   ahead->update(fix);  // its own affair
-  EXPECT_EQ(navigator.innovation(fix).value_n, own.value_n);
+  EXPECT_EQ(navigator.innovation(*fix).value, own.value);
   // Three times the sigma, but for the noise of two seconds and of the fix.
-  const double grown = doubtful->epoch().covariance(kAttitude, kAttitude);
-  EXPECT_NEAR(grown / navigator.epoch().covariance(kAttitude, kAttitude), 9, 0.5);
+  const double grown = doubtful->epoch().covariance(block::attitude.offset, block::attitude.offset);
+  EXPECT_NEAR(grown / navigator.epoch().covariance(block::attitude.offset, block::attitude.offset),
+              9, 0.5);
   EXPECT_EQ(before.t_ns, 12'010'000'000);
 }
 
@@ -288,13 +291,13 @@ TEST_F(WindowNavigatorTest, WhatLoosensItIsAddedToItsCovariance) {
   navigator.start(initial(1));
   run(navigator, 12, 10, 99, [](int) {});
   const Epoch before = navigator.epoch();
-  Matrix15d added = Matrix15d::Zero();
+  NodeMatrix added = NodeMatrix::Zero();
   added.diagonal().head<3>() = Vector3d(1, 4, 9);
   navigator.loosen(added);
   const Epoch after = navigator.epoch();
   EXPECT_LT((after.covariance - before.covariance - added).norm(), 1e-6);
   EXPECT_LT((error(after) - error(before)).norm(), 1e-6);
-  navigator.update(fix_at(12, 0.02));
+  navigator.update(gnss_position(fix_at(12, 0.02)));
   EXPECT_LT(error(navigator.epoch()).head<3>().norm(), 0.1);
 }
 

@@ -5,10 +5,8 @@
 #include <vector>
 
 #include "foucault/core/config.h"
-#include "foucault/fgo/fgo_options.h"
-#include "foucault/fgo/gnss_factor.h"
-#include "foucault/fgo/imu_interval.h"
-#include "foucault/fgo/prior_factor.h"
+#include "foucault/fgo/batch_solver.h"
+#include "foucault/inertial/recent_rates.h"
 #include "foucault/inertial/smoother.h"
 
 /// Smoothing by one optimization over a whole log: the cost (48) with every node in the window.
@@ -24,41 +22,15 @@ class BatchOptions : public Configurable {
   PreintegrationModel preintegration_model() const;
 };
 
-/// A chain of nodes, each joined to the next by an interval: nodes.size() == intervals.size() + 1.
-struct BatchNode {
-  int64_t t_ns = 0;
-  NodeState x;  ///< first estimate
-  std::vector<LocalFix> fixes;
-};
-struct BatchChain {
-  LocalFrame frame{Geodetic{}};  ///< w
-  SquareRootPrior prior;         ///< on the first node
-  std::vector<BatchNode> nodes;
-  std::vector<ImuInterval> intervals;
-};
-
-struct BatchSolution {
-  std::vector<NodeState> x;
-  std::vector<Matrix15d> covariance_w;  ///< of each node, from everything
-};
-
-/// Minimizes the cost by Ceres from the nodes' first estimates; intervals whose bias has moved are
-/// integrated again if their increments were kept, and in `full` gravity is that of where the
-/// nodes come to lie. Time and memory are linear in the nodes: the
-/// covariances come from eliminating the chain from both ends, not from inverting it.
-/// Throws std::runtime_error if the problem cannot be solved.
-BatchSolution solve(BatchChain& chain, const FgoOptions& options, PreintegrationModel model,
-                    const ImuNoise& noise);
-
 /// Runs another navigator forward and leaves the chain of its way.
-/// A node stands at every fix, hold and mark, and the ends of a run; about 6 kB each while it
-/// runs, 55 kB while it is solved. Increments are kept only while the bias is so uncertain that the
+/// A node stands at every observation, hold and mark, and the ends of a run; less than 6 kB each.
+/// Increments are kept only while the bias is so uncertain that the
 /// interval may have to be integrated again.
 class BatchRecorder final : public Navigator, public Recording {
  public:
   /// Throws UsageError for noise of the IMU that is zero, naming its key; a bias may be constant.
   BatchRecorder(std::unique_ptr<Navigator> forward, const FgoOptions& options,
-                PreintegrationModel model, const ImuNoise& noise);
+                PreintegrationModel model, const ImuNoise& noise, const Layout& layout = {});
 
   void start(const Epoch& initial) override;
   void propagate(const ImuIncrement& increment) override;
@@ -66,7 +38,7 @@ class BatchRecorder final : public Navigator, public Recording {
     return forward_->innovation(observation);
   }
   void update(const ObservationPtr& observation) override;
-  void loosen(const Matrix15d& added) override;
+  void loosen(const NodeMatrix& added) override;
   std::unique_ptr<Navigator> ahead(double scale) const override { return forward_->ahead(scale); }
   void hold() override;
   Epoch epoch() const override { return forward_->epoch(); }
@@ -74,15 +46,15 @@ class BatchRecorder final : public Navigator, public Recording {
   std::size_t mark() override;
   bool at_node() const override { return integrator_ && integrator_->dt() == 0; }
   std::size_t size() const override { return passages_.size(); }
-  std::vector<SmoothedEpoch> smoothed() override;
+  std::deque<SmoothedEpoch> smoothed() override;
 
  private:
-  /// What the forward run had at a node.
+  /// What the forward run had at a node, without slow blocks.
   struct Passage {
     NavState predicted, filtered;
   };
 
-  Matrix15d covariance_w(const Epoch& now) const;
+  SquareRootPrior prior_of(const Epoch& epoch) const;
   void begin_interval(const Epoch& now);
   void close_interval();
   void add_node(const Epoch& now);
@@ -90,14 +62,14 @@ class BatchRecorder final : public Navigator, public Recording {
 
   std::unique_ptr<Navigator> forward_;
   FgoOptions options_;
-  PreintegrationModel model_;
+  GraphContext context_;  ///< its frame since the first start
   ImuNoise noise_;
 
-  std::optional<LocalFrame> frame_;          ///< at the first start
-  std::vector<BatchChain> chains_;           ///< one a start
-  std::vector<Passage> passages_;            ///< one a node, all chains
+  std::deque<BatchChain> chains_;            ///< one a start
+  std::deque<Passage> passages_;             ///< one a node, all chains
   std::optional<Preintegrator> integrator_;  ///< from the newest node on
   ImuInterval open_;
+  RecentRates rates_{kLeverArmRateMemory};
   EarthModel earth_;
 };
 
@@ -105,6 +77,7 @@ class BatchRecorder final : public Navigator, public Recording {
 std::unique_ptr<Estimator> make_batch_smoother(std::unique_ptr<Navigator> forward,
                                                const FgoOptions& options, PreintegrationModel model,
                                                const ImuNoise& noise, Aligner aligner,
-                                               const NavigationRunOptions& run_options, Sink& sink);
+                                               const NavigationRunOptions& run_options, Sink& sink,
+                                               const Layout& layout = {});
 
 }  // namespace foucault

@@ -1,48 +1,72 @@
 #pragma once
 
-#include "foucault/fgo/gnss_factor.h"
 #include "foucault/fgo/preintegration_factor.h"
 #include "foucault/fgo/prior_factor.h"
+#include "foucault/fgo/whitened_rows.h"
 
-/// The graph is a chain: prior - node - interval - node - ... Eliminating it from the old end, one
-/// node at a time, gives both what marginalization keeps and the covariance of the newest node, at
-/// a cost linear in the nodes and without inverting the window.
+/// The graph is a chain: prior - node - interval - node - ..., with a border, the slow blocks, that
+/// every node and interval may have to do with. Eliminating it from the old end, one node at a
+/// time, gives both what marginalization keeps and the covariance of the newest node and the
+/// border, at a cost linear in the nodes and without inverting the window.
 ///
 /// Everything stays a square root, by Householder's QR. Normal equations would have to find what is
 /// known of a node as a difference of squares: an interval of a second knows a step to 0.1 mm, an
 /// outage of half an hour leaves a position to kilometres, and (1e-4 / 1e4)^2 is below rounding.
 namespace foucault {
 
-/// Rows that say something of a node's tangent d: cost |r + S d|^2 / 2.
-struct NodeInformation {
-  Matrix15d S = Matrix15d::Zero();  ///< upper triangular
-  Vector15d r = Vector15d::Zero();
+/// Node by (node, border).
+using NodeByState =
+    Eigen::Matrix<double, kNodeSize, Eigen::Dynamic, Eigen::ColMajor, kNodeSize, kMostSize>;
 
-  void add(const NodeInformation& other);
-  void add(const PriorFactor::Linearized& prior);
+/// Rows that say something of a node's tangent and the border's, d: cost |r + S d|^2 / 2.
+struct NodeInformation {
+  StateMatrix S;  ///< upper triangular
+  StateVector r;
+
+  explicit NodeInformation(Eigen::Index slow = 0);
+
+  Eigen::Index slow() const { return r.size() - kNodeSize; }
+
+  void add(const StateRows& rows);
   /// `weight` scales the squared cost, as a robust loss does.
-  void add(const GnssFactor::Linearized& fix, double weight = 1);
+  void add(const ObservationRows& rows, double weight = 1);
+
+  /// From now on the border's tangent is counted from a point that is `moved` further.
+  void move_border(const SlowVector& moved);
+
+  /// The d of least cost.
+  StateVector solution() const;
 };
 
-/// A node eliminated from the chain: what it leaves on the next, and its own best value for any
-/// value of that one. Its rows are a + R d + A d_next.
-struct Elimination {
-  NodeInformation rest;
-  Matrix15d R;  ///< upper triangular
-  Matrix15d A;
-  Vector15d a;
+/// What an eliminated node is for any value of the next node and the border:
+/// its rows are a + R d + A (d_next, d_border).
+struct Conditional {
+  NodeMatrix R;  ///< upper triangular
+  NodeByState A;
+  NodeVector a;
 
-  /// Tangent of the eliminated node that minimizes the cost when the next one's is `next`.
-  Vector15d eliminated(const Vector15d& next) const;
+  /// Tangent of the eliminated node that minimizes the cost, for that of the next and the border.
+  NodeVector eliminated(const StateVector& next) const;
+
+  /// Covariance of the eliminated node and the border, from that of the next node and the border.
+  /// A sum of positive terms alone.
+  StateMatrix covariance(const StateMatrix& next) const;
+};
+
+/// A node eliminated from the chain, and what it leaves on the next and the border.
+struct Elimination : Conditional {
+  NodeInformation rest;
 };
 
 /// Throws std::runtime_error if the eliminated node is not determined.
-Elimination eliminate(const NodeInformation& first, const MotionResidual& interval);
+Elimination eliminate(const NodeInformation& first, const IntervalRows& interval);
 
-/// At the linearization point `at`.
-SquareRootPrior to_prior(const NodeInformation& information, const NodeState& at);
+/// At the linearization point (at, slow).
+SquareRootPrior to_prior(const NodeInformation& information, const NodeState& at,
+                         const SlowVector& slow);
 
-/// Throws std::runtime_error if the node is not determined.
-Matrix15d covariance(const NodeInformation& information);
+/// Of the node and the border.
+/// Throws std::runtime_error if they are not determined.
+StateMatrix covariance(const NodeInformation& information);
 
 }  // namespace foucault

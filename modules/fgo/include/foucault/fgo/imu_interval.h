@@ -4,16 +4,17 @@
 #include <optional>
 #include <vector>
 
+#include "foucault/fgo/graph_context.h"
 #include "foucault/fgo/preintegration_factor.h"
 
 namespace foucault {
 
 /// Between a node and the next: the factor, and what it was integrated from.
 struct ImuInterval {
-  std::vector<ImuIncrement> increments;  ///< kept to integrate again when the bias moves
+  std::vector<ImuIncrement> increments;  ///< kept to integrate again
   std::optional<ImuIncrement> before;    ///< the increment before the first
   std::unique_ptr<PreintegrationFactor> factor;
-  std::unique_ptr<Matrix15d> loosened;  ///< covariance beyond the IMU's, of the factor's residual
+  std::unique_ptr<NodeMatrix> loosened;  ///< covariance beyond the IMU's, of the factor's residual
 };
 
 /// What the model takes from an integrator: in `full` the biases decay.
@@ -23,18 +24,16 @@ Preintegration measured(const Preintegrator& integrator, PreintegrationModel mod
 /// (46), g (|dbg| T)^2 T / 6, nears 1e-6 m/s, and the interval is to be integrated anew.
 constexpr double kReintegrationAngle = 1e-3;  // [rad]
 
-bool bias_moved(const Preintegration& pre, const ImuBias& bias);
+/// Scale factors of the gyroscopes likewise.
+bool has_turned(const ImuInterval& interval, const ImuBias& bias, const SlowVector& slow);
 
-/// The residual (49) between two states, not whitened.
-MotionResidual unwhitened(const ImuInterval& interval, const NodeState& begin,
-                          const NodeState& end);
+/// The end of the interval from `begin` to `end` may have been off by more than the IMU's noise:
+/// `added` comes to the covariance of its error.
+void loosen(ImuInterval& interval, const NodeState& begin, const NodeState& end,
+            const NodeMatrix& added, const Layout& layout);
 
-/// The motion may have been off by more than the IMU's noise: `added` comes to the covariance of
-/// the residual.
-void loosen(ImuInterval& interval, const Matrix15d& added);
-
-/// Integrates the interval again, at `bias`; there is a new factor then.
-void reintegrate(ImuInterval& interval, const ImuBias& bias, const ImuNoise& noise,
-                 PreintegrationModel model);
+/// Integrates the interval again, at these values; there is a new factor then.
+void reintegrate(ImuInterval& interval, const ImuBias& bias, const SlowVector& slow,
+                 const ImuNoise& noise, const GraphContext& context);
 
 }  // namespace foucault

@@ -1,31 +1,77 @@
 #pragma once
 
-#include <ceres/sized_cost_function.h>
+#include <ceres/cost_function.h>
+
+#include <array>
+#include <memory>
+#include <optional>
 
 #include "foucault/fgo/state_block.h"
+#include "foucault/preintegration/motion.h"
+#include "foucault/state/layout.h"
 
 namespace foucault {
 
+/// Whitened rows of an interval: r + J_x0 d0 + J_x1 d1 + J_slow d_border.
+struct IntervalRows {
+  NodeVector r;
+  NodeMatrix J_x0, J_x1;
+  NodeBySlow J_slow;
+};
+
+/// A Preintegration without its covariance and what scale factors do to it: a third of its size.
+struct PreintegratedMotion {
+  int64_t t_begin_ns, t_end_ns;
+  double dt;
+  Eigen::Quaterniond dq;
+  Eigen::Vector3d dv, dp, idp, iidp;
+  ImuBias bias;
+  double gyro_bias_decay, accel_bias_decay;
+  DeltaJacobian by_gyro_bias, by_accel_bias;
+};
+struct ScaledMotion {
+  std::optional<ImuScale> scale;
+  DeltaJacobian by_gyro_scale, by_accel_scale;
+};
+
 /// Residual (49) between two neighbouring nodes, whitened by the covariance (43).
-/// Blocks: node k-1, node k. The square-root information is built once, here.
-class PreintegrationFactor final
-    : public ceres::SizedCostFunction<15, kStateBlockSize, kStateBlockSize> {
+/// Blocks: node k-1, node k, and the border if there is one. The square-root information is built
+/// once, here. 1.9 kB, 2.4 kB with scale factors: a batch keeps one for each of its nodes.
+class PreintegrationFactor final : public ceres::CostFunction {
  public:
   /// Throws std::invalid_argument if the covariance is not positive definite.
-  PreintegrationFactor(const Preintegration& pre, const EarthModel& earth);
+  PreintegrationFactor(const Preintegration& pre, const EarthModel& earth,
+                       const Layout& layout = {});
 
-  /// Whitened residual and tangent Jacobians.
-  MotionResidual linearize(const NodeState& x0, const NodeState& x1) const;
+  IntervalRows linearize(const NodeState& x0, const NodeState& x1, const SlowVector& slow) const;
 
-  const Preintegration& preintegration() const { return pre_; }
+  /// The residual alone.
+  NodeVector residual(const NodeState& x0, const NodeState& x1, const SlowVector& slow) const;
+
+  int64_t t_begin_ns() const { return motion_.t_begin_ns; }
+  /// An angle [rad] by which the interval turns otherwise than it was integrated, if these are the
+  /// bias and the slow blocks.
+  double turned_by(const ImuBias& bias, const SlowVector& slow) const;
+
   const EarthModel& earth() const { return earth_; }
+  /// With its covariance, from the square-root information.
+  Preintegration preintegration() const;
+
+  /// The same measurement on the Earth as it is elsewhere.
+  void set_earth(const EarthModel& earth) { earth_ = earth; }
 
   bool Evaluate(double const* const* blocks, double* residual, double** jacobians) const override;
 
  private:
-  Preintegration pre_;
+  Preintegration without_covariance() const;
+  NodeMatrix sqrt_information() const;
+
+  PreintegratedMotion motion_;
+  std::unique_ptr<ScaledMotion> scaled_;  ///< if it was integrated at scale factors
   EarthModel earth_;
-  Matrix15d sqrt_information_;  ///< lower triangular, inverse Cholesky factor of the covariance
+  /// Inverse Cholesky factor of the covariance, its lower triangle.
+  std::array<double, kNodeSize*(kNodeSize + 1) / 2> sqrt_information_;
+  Layout layout_;
 };
 
 }  // namespace foucault

@@ -1,31 +1,31 @@
 #pragma once
 
-#include <ceres/sized_cost_function.h>
+#include <ceres/cost_function.h>
 
 #include "foucault/fgo/state_block.h"
+#include "foucault/fgo/whitened_rows.h"
 
 namespace foucault {
 
-/// Square-root prior on a node: cost |r + S (x (-) at)|^2 / 2. What marginalization leaves, or an
-/// initial state with its covariance; {r_p, H_p} of (48).
+/// Square-root prior on a node and the border: cost |r + S ((x, slow) (-) (at, slow_at))|^2 / 2.
+/// What marginalization leaves, or an initial state with its covariance; {r_p, H_p} of (48).
 struct SquareRootPrior {
   NodeState at;
-  Matrix15d S = Matrix15d::Identity();
-  Vector15d r = Vector15d::Zero();
+  SlowVector slow_at;
+  StateMatrix S = StateMatrix::Identity(kNodeSize, kNodeSize);
+  StateVector r = StateVector::Zero(kNodeSize);
 };
 
 /// Throws std::invalid_argument if the covariance is not positive definite.
-SquareRootPrior prior_from_covariance(const NodeState& at, const Matrix15d& covariance);
+SquareRootPrior prior_from_covariance(const NodeState& at, const SlowVector& slow_at,
+                                      const StateMatrix& covariance);
 
-class PriorFactor final : public ceres::SizedCostFunction<15, kStateBlockSize> {
+/// Blocks: node, and border if there is one.
+class PriorFactor final : public ceres::CostFunction {
  public:
-  explicit PriorFactor(const SquareRootPrior& prior) : prior_(prior) {}
+  explicit PriorFactor(const SquareRootPrior& prior);
 
-  struct Linearized {
-    Vector15d r;
-    Matrix15d J;
-  };
-  Linearized linearize(const NodeState& x) const;
+  StateRows linearize(const NodeState& x, const SlowVector& slow) const;
 
   bool Evaluate(double const* const* blocks, double* residual, double** jacobians) const override;
 

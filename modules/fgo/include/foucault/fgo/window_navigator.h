@@ -8,29 +8,32 @@
 
 #include "foucault/fgo/chain.h"
 #include "foucault/fgo/fgo_options.h"
-#include "foucault/fgo/gnss_factor.h"
 #include "foucault/fgo/imu_interval.h"
-#include "foucault/fgo/prior_factor.h"
+#include "foucault/fgo/observation_factor.h"
 #include "foucault/inertial/navigator.h"
+#include "foucault/inertial/recent_rates.h"
 
 namespace foucault {
 
 /// GNSS/INS by sliding-window factor graph optimization, paper section IV.
 ///
-/// A node stands at every fix and at every hold(); neighbours are joined by a preintegration
-/// factor; the cost (48) over the window is minimized at every fix. Nodes older than window_s are
-/// marginalized into a square-root prior. w is the NED at the place of start().
+/// A node stands at every observation and at every hold(); neighbours are joined by a
+/// preintegration factor; slow blocks are a border of the window; the cost (48) over the window is
+/// minimized at every observation. Nodes older than window_s are marginalized into a square-root
+/// prior. w is the NED at the place of start().
 ///
 /// Only what changed is solved again. The factors are linear but for the attitudes, so the part of
 /// the window whose attitudes stay within kSettled of where it was linearized is summed up by its
 /// quadratic form, which elimination along the chain leaves on its last node: Ceres gets that form
 /// as a prior and the nodes behind it. Its result is carried back through the settled part; where
-/// an attitude leaves kSettled, or a bias asks for a new integration, the window is solved again
-/// from there on. After a start or an outage that is the whole window, in calm times two nodes.
+/// an attitude leaves kSettled, a bias asks for a new integration, or an observation bends with the
+/// border, the window is solved again from there on. After a start or an outage that is the whole
+/// window, in calm times two nodes.
 class WindowNavigator final : public Navigator {
  public:
   /// Throws UsageError for noise of the IMU that is zero, naming its key; a bias may be constant.
-  WindowNavigator(const FgoOptions& options, PreintegrationModel model, const ImuNoise& noise);
+  WindowNavigator(const FgoOptions& options, PreintegrationModel model, const ImuNoise& noise,
+                  const Layout& layout = {});
   ~WindowNavigator() override;
 
   void start(const Epoch& initial) override;
@@ -38,7 +41,7 @@ class WindowNavigator final : public Navigator {
   Innovation innovation(const Observation& observation) const override;
   void update(const ObservationPtr& observation) override;
   /// The window ends here: what it knows becomes the prior of a node at the current time.
-  void loosen(const Matrix15d& added) override;
+  void loosen(const NodeMatrix& added) override;
   std::unique_ptr<Navigator> ahead(double scale) const override;
   void hold() override;
   Epoch epoch() const override;
@@ -46,15 +49,17 @@ class WindowNavigator final : public Navigator {
   std::size_t nodes() const { return nodes_.size(); }
 
  private:
-  /// What the past and the node's own fixes say of it, as a quadratic form at a state.
+  /// What the past and the node's own observations say of it and the border, as a quadratic form at
+  /// a state.
   struct Linearization {
     NodeState at;
+    SlowVector slow;
     NodeInformation information;
   };
   struct Node {
     int64_t t_ns = 0;
     NodeState x;
-    std::deque<GnssFactor> fixes;
+    std::deque<ObservationFactor> observations;
     Linearization past;
   };
   /// Between a node and the next.
@@ -63,10 +68,10 @@ class WindowNavigator final : public Navigator {
   };
   struct Prediction {
     NodeState x;
-    Matrix15d covariance;
+    StateMatrix covariance;  ///< with that of the border
   };
 
-  void begin_window(int64_t t_ns, const NodeState& x, const Matrix15d& covariance);
+  void begin_window(int64_t t_ns, const NodeState& x, const StateMatrix& covariance);
   void begin_interval();
   Prediction prediction() const;
   void add_node(const NodeState& x, const Preintegration& pre);
@@ -76,23 +81,25 @@ class WindowNavigator final : public Navigator {
   void carry_back(std::size_t from);
   std::size_t first_unsettled();
   bool has_moved(const Node& node) const;
-  void add_fixes(Node& node) const;
+  bool has_bent(const ObservationFactor& observation, const Node& node) const;
+  void add_observations(Node& node) const;
   void marginalize_old();
   bool at_node() const { return integrator_->dt() == 0; }
 
   FgoOptions options_;
-  PreintegrationModel model_;
+  GraphContext context_;  ///< its frame since start()
   ImuNoise noise_;
   std::unique_ptr<ceres::LossFunction> loss_;
 
-  std::optional<LocalFrame> frame_;
   EarthModel earth_;  ///< of the interval from the newest node on
   std::deque<Node> nodes_;
-  std::deque<Interval> intervals_;            ///< one less than nodes
-  SquareRootPrior prior_;                     ///< on the first node, without its fixes
-  std::optional<Preintegrator> integrator_;   ///< from the newest node on
-  ImuInterval open_;                          ///< its increments
-  Matrix15d covariance_ = Matrix15d::Zero();  ///< of the newest node
+  std::deque<Interval> intervals_;           ///< one less than nodes
+  SlowVector slow_;                          ///< the border
+  SquareRootPrior prior_;                    ///< on the first node, without its observations
+  std::optional<Preintegrator> integrator_;  ///< from the newest node on
+  ImuInterval open_;                         ///< its increments
+  RecentRates rates_{kLeverArmRateMemory};
+  StateMatrix covariance_;  ///< of the newest node and the border
 };
 
 }  // namespace foucault

@@ -1,0 +1,17 @@
+#pragma once
+
+#include "foucault/state/kalman.h"
+
+namespace foucault {
+
+/// Rows that say something of a node's tangent and of the border: cost |r + J d|^2 / 2 with
+/// d = (node, border). The border are the slow blocks, which all nodes of a graph share.
+template <int kMostRows>
+struct WhitenedRows {
+  Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMostRows, 1> r;
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMostRows, kMostSize> J;
+};
+using ObservationRows = WhitenedRows<kMostMeasured>;
+using StateRows = WhitenedRows<kMostSize>;
+
+}  // namespace foucault

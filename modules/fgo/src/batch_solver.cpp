@@ -1,0 +1,341 @@
+#include "foucault/fgo/batch_solver.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "foucault/core/profile.h"
+#include "foucault/fgo/chain.h"
+#include "robust_loss.h"
+
+namespace foucault {
+namespace {
+
+/// The second order of gravity is 3 g (d / R)^2 or less: 7e-7 m/s^2.
+constexpr double kGravityIsLinear = 1000;  // [m]
+
+/// Forward runs that were off by tens of kilometres need two.
+constexpr int kRounds = 5;
+
+/// Nodes between two whose elimination is kept.
+constexpr std::size_t kSegment = 64;
+
+/// A step is taken if it lowers the cost by this share of what the quadratic model says.
+constexpr double kLeastShare = 1e-3;
+/// Share of the cost that is not worth another step.
+constexpr double kCostShareLeft = 1e-7;
+/// A thousandth of a sigma.
+constexpr double kCostLeft = 1e-6;
+
+/// Where attitudes are off by degrees while velocity increments are known to 1e-4 m/s, the valley
+/// of the cost is curved, a plain step climbs out of it, and the radius must come down to the
+/// valley's.
+constexpr double kDamped = 1e4;
+constexpr int kDampedIterations = 10;  // times those of the options
+
+/// Levenberg and Marquardt's radius, as Ceres has it: what is known of a column by itself, over it,
+/// is added to what is known of all.
+struct TrustRegion {
+  double radius = kDamped;
+  double shrink = 2;
+
+  void adapt(bool better, double share) {
+    if (better) {
+      radius /= std::max(1.0 / 3, 1 - std::pow(2 * share - 1, 3));
+      shrink = 2;
+    } else {
+      radius /= shrink;
+      shrink *= 2;
+    }
+  }
+};
+
+/// The chain at its states, and the search for better ones.
+class BatchSolver {
+ public:
+  BatchSolver(BatchChain& chain, const GraphContext& context, const FgoOptions& options)
+      : chain_(chain),
+        context_(context),
+        options_(options),
+        loss_(make_loss(options)),
+        prior_(chain.prior),
+        at_{{}, chain.prior.slow_at} {
+    for (const BatchNode& node : chain.nodes) at_.x.push_back(node.x);
+  }
+
+  void optimize();
+
+  /// New factors where biases or places have left those of the first estimate. True if there were
+  /// any.
+  bool renew_factors(const ImuNoise& noise);
+
+  BatchSolution solution();
+
+ private:
+  struct States {
+    std::vector<NodeState> x;
+    SlowVector slow;
+  };
+  /// What is known of the newest node when all before it are eliminated.
+  struct Front {
+    NodeInformation information;
+    StateVector squares;  ///< of the columns' norms
+  };
+  /// An eliminated node.
+  struct Pivot : Conditional {
+    NodeVector damping;
+  };
+
+  bool plain_steps();
+  void damped_steps();
+  bool take_if_better(double predicted, double& share);
+  double step();
+  double cost(const States& at) const;
+
+  Front first_front() const;
+  Pivot advance(std::size_t k, Front& front) const;
+  void add_own(std::size_t k, Front& front) const;
+  void add(const ObservationRows& z, Front& front) const;
+  NodeVector damp_node(Front& front) const;
+  StateVector damp_all(Front& front) const;
+  void damp(const StateVector& diagonal, Front& front) const;
+  Front sweep();
+  template <class Each>
+  void go_back(const Each& each);
+
+  bool reintegrate_turned(std::size_t k, const ImuNoise& noise);
+  bool move_earth(std::size_t k);
+
+  BatchChain& chain_;
+  const GraphContext& context_;
+  const FgoOptions& options_;
+  std::unique_ptr<ceres::LossFunction> loss_;
+  PriorFactor prior_;
+  std::optional<TrustRegion> region_;  ///< none: plain steps
+  States at_, next_;
+  double cost_ = 0;
+  std::vector<Front> kept_;    ///< of every kSegment-th node
+  std::vector<Pivot> pivots_;  ///< of a segment
+};
+
+// The elimination --------------------------------------------------------------------------------
+
+BatchSolver::Front BatchSolver::first_front() const {
+  const Eigen::Index slow = at_.slow.size();
+  Front front{NodeInformation(slow), StateVector::Zero(kNodeSize + slow)};
+  const StateRows prior = prior_.linearize(at_.x[0], at_.slow);
+  front.information.add(prior);
+  front.squares += prior.J.colwise().squaredNorm().transpose();
+  add_own(0, front);
+  return front;
+}
+
+void BatchSolver::add_own(std::size_t k, Front& front) const {
+  for (const NodeObservation& observation : chain_.nodes[k].observations)
+    add(linearize(observation, at_.x[k], at_.slow, context_), front);
+}
+
+void BatchSolver::add(const ObservationRows& z, Front& front) const {
+  const double weight = robust_cost(loss_.get(), z).weight;
+  front.information.add(z, weight);
+  front.squares += weight * z.J.colwise().squaredNorm().transpose();
+}
+
+/// Eliminates node k; what is known of it becomes what is known of the next.
+BatchSolver::Pivot BatchSolver::advance(std::size_t k, Front& front) const {
+  const IntervalRows interval =
+      chain_.intervals[k].factor->linearize(at_.x[k], at_.x[k + 1], at_.slow);
+  const Eigen::Index slow = at_.slow.size();
+  front.squares.head<kNodeSize>() += interval.J_x0.colwise().squaredNorm().transpose();
+  front.squares.tail(slow) += interval.J_slow.colwise().squaredNorm().transpose();
+  const NodeVector damping = damp_node(front);
+  const Elimination elimination = eliminate(front.information, interval);
+  front.information = elimination.rest;
+  front.squares.head<kNodeSize>() = interval.J_x1.colwise().squaredNorm().transpose();
+  add_own(k + 1, front);
+  return {elimination, damping};
+}
+
+NodeVector BatchSolver::damp_node(Front& front) const {
+  StateVector diagonal = StateVector::Zero(front.squares.size());
+  if (!region_) return diagonal.head<kNodeSize>();
+  diagonal.head<kNodeSize>() = (front.squares.head<kNodeSize>() / region_->radius).cwiseSqrt();
+  damp(diagonal, front);
+  return diagonal.head<kNodeSize>();
+}
+
+StateVector BatchSolver::damp_all(Front& front) const {
+  if (!region_) return StateVector::Zero(front.squares.size());
+  const StateVector diagonal = (front.squares / region_->radius).cwiseSqrt();
+  damp(diagonal, front);
+  return diagonal;
+}
+
+void BatchSolver::damp(const StateVector& diagonal, Front& front) const {
+  const Eigen::Index size = diagonal.size();
+  StateRows rows{StateVector::Zero(size), StateMatrix::Zero(size, size)};
+  rows.J.diagonal() = diagonal;
+  front.information.add(rows);
+}
+
+/// Eliminates all nodes but the last.
+BatchSolver::Front BatchSolver::sweep() {
+  kept_.clear();
+  Front front = first_front();
+  for (std::size_t k = 0; k + 1 < at_.x.size(); ++k) {
+    if (k % kSegment == 0) kept_.push_back(front);
+    advance(k, front);
+  }
+  return front;
+}
+
+/// From the last node that was eliminated to the first, each(k, pivot).
+template <class Each>
+void BatchSolver::go_back(const Each& each) {
+  std::size_t end = at_.x.size() - 1;
+  for (std::size_t segment = kept_.size(); segment-- > 0;) {
+    const std::size_t begin = segment * kSegment;
+    pivots_.clear();
+    for (std::size_t k = begin; k < end; ++k) pivots_.push_back(advance(k, kept_[segment]));
+    for (std::size_t k = end; k-- > begin;) each(k, pivots_[k - begin]);
+    end = begin;
+  }
+}
+
+// The search -------------------------------------------------------------------------------------
+
+double BatchSolver::cost(const States& at) const {
+  double twice = prior_.linearize(at.x[0], at.slow).r.squaredNorm();
+  for (std::size_t k = 0; k < at.x.size(); ++k) {
+    for (const NodeObservation& z : chain_.nodes[k].observations)
+      twice += robust_cost(loss_.get(), linearize(z, at.x[k], at.slow, context_)).cost;
+    if (k + 1 < at.x.size())
+      twice += chain_.intervals[k].factor->residual(at.x[k], at.x[k + 1], at.slow).squaredNorm();
+  }
+  return 0.5 * twice;
+}
+
+/// Goes to next_. By how much the cost falls if it is as quadratic as here.
+double BatchSolver::step() {
+  Front front = sweep();
+  const StateVector damping = damp_all(front);
+  StateVector d = front.information.solution();
+  const Eigen::Index slow = at_.slow.size();
+  double twice = front.information.r.squaredNorm() + damping.cwiseProduct(d).squaredNorm();
+  next_.x.resize(at_.x.size());
+  next_.x.back() = boxplus(at_.x.back(), NodeVector(d.head<kNodeSize>()));
+  next_.slow = at_.slow + d.tail(slow);
+  go_back([&](std::size_t k, const Pivot& pivot) {
+    const NodeVector own = pivot.eliminated(d);
+    next_.x[k] = boxplus(at_.x[k], own);
+    twice += pivot.a.squaredNorm() + pivot.damping.cwiseProduct(own).squaredNorm();
+    d.head<kNodeSize>() = own;
+  });
+  return 0.5 * twice;
+}
+
+void BatchSolver::optimize() {
+  const StageTimer timer(Stage::solve);
+  cost_ = cost(at_);
+  if (!std::isfinite(cost_))
+    throw std::runtime_error("the factor graph could not be solved: its cost is not finite");
+  region_.reset();
+  if (plain_steps()) return;
+  region_.emplace();
+  damped_steps();
+  region_.reset();
+}
+
+/// True when the step that was taken is known to be the last one that matters. If the quadratic
+/// model missed the change of cost by a share e, the gradient left is of order e and the cost left
+/// e^2 of the change.
+bool BatchSolver::plain_steps() {
+  for (int64_t i = 0; i < options_.max_iterations; ++i) {
+    const double predicted = step();
+    const double before = cost_;
+    double share = 0;
+    const bool better = take_if_better(predicted, share);
+    const double change = share * predicted;
+    if (predicted < kCostLeft || std::abs(change) <= kCostShareLeft * before) return true;
+    if (!better) return false;
+    if ((1 - share) * (1 - share) * change < kCostLeft) return true;
+  }
+  return false;
+}
+
+/// Of a damped step the model holds, too.
+void BatchSolver::damped_steps() {
+  for (int64_t i = 0; i < kDampedIterations * options_.max_iterations; ++i) {
+    const double predicted = step();
+    const double before = cost_;
+    double share = 0;
+    const bool better = take_if_better(predicted, share);
+    if (std::abs(share * predicted) <= kCostShareLeft * before) return;
+    region_->adapt(better, share);
+  }
+}
+
+/// share: of the predicted change, what came.
+bool BatchSolver::take_if_better(double predicted, double& share) {
+  const double next_cost = cost(next_);
+  share = (cost_ - next_cost) / predicted;
+  if (!(share > kLeastShare)) return false;
+  std::swap(at_, next_);
+  cost_ = next_cost;
+  return true;
+}
+
+// Factors and covariances ------------------------------------------------------------------------
+
+bool BatchSolver::renew_factors(const ImuNoise& noise) {
+  bool renewed = false;
+  for (std::size_t k = 0; k < chain_.intervals.size(); ++k) {
+    const bool integrated = reintegrate_turned(k, noise);
+    const bool placed = context_.model == PreintegrationModel::full && move_earth(k);
+    renewed = renewed || integrated || placed;
+  }
+  return renewed;
+}
+
+bool BatchSolver::reintegrate_turned(std::size_t k, const ImuNoise& noise) {
+  ImuInterval& interval = chain_.intervals[k];
+  if (interval.increments.empty()) return false;
+  if (!has_turned(interval, at_.x[k].bias, at_.slow)) return false;
+  reintegrate(interval, at_.x[k].bias, at_.slow, noise, context_);
+  return true;
+}
+
+/// Gravity is linear about the place where the forward run was.
+bool BatchSolver::move_earth(std::size_t k) {
+  PreintegrationFactor& factor = *chain_.intervals[k].factor;
+  const Eigen::Vector3d& p_w = at_.x[k].p_w_b;
+  if ((p_w - factor.earth().p_ref).norm() < kGravityIsLinear) return false;
+  factor.set_earth(earth_model(context_.model, context_.frame, p_w));
+  return true;
+}
+
+BatchSolution BatchSolver::solution() {
+  const StageTimer timer(Stage::covariance);
+  next_ = {};
+  std::vector<PackedSymmetric> covariances(at_.x.size());
+  StateMatrix P = covariance(sweep().information);
+  covariances.back() = PackedSymmetric(P);
+  go_back([&](std::size_t k, const Pivot& pivot) {
+    P = pivot.covariance(P);
+    covariances[k] = PackedSymmetric(P);
+    chain_.intervals.pop_back();  // its memory goes to what is still to come
+  });
+  return {std::move(at_.x), at_.slow, std::move(covariances)};
+}
+
+}  // namespace
+
+BatchSolution solve(BatchChain& chain, const GraphContext& context, const FgoOptions& options,
+                    const ImuNoise& noise) {
+  BatchSolver solver(chain, context, options);
+  solver.optimize();
+  for (int round = 0; round < kRounds && solver.renew_factors(noise); ++round) solver.optimize();
+  return solver.solution();
+}
+
+}  // namespace foucault

@@ -1,0 +1,17 @@
+#include "foucault/fgo/graph_context.h"
+
+namespace foucault {
+
+Layout as_constants(const Layout& layout) {
+  Layout constants;
+  for (const SlowBlock& slow : layout.slow()) constants.add(slow.block, slow.sigma);
+  return constants;
+}
+
+std::optional<ImuScale> scale_of(const Layout& layout, const SlowVector& slow) {
+  if (!layout.slow_index(block::gyro_scale) && !layout.slow_index(block::accel_scale))
+    return std::nullopt;
+  return layout.imu_scale(slow);
+}
+
+}  // namespace foucault
