@@ -69,7 +69,7 @@ class DemoDriver {
     e.bias.gyro = (Eigen::Vector3d(12, -30, 55) + bias_walk_) / 206264.8;
     e.bias.accel = 1e-5 * (Eigen::Vector3d(300, -120, 40) + 10 * bias_walk_);
     const double settled = std::exp(-t / 60);
-    Vector15d s;
+    NodeVector s;
     s << Eigen::Vector3d::Constant(sigma(t)), Eigen::Vector3d::Constant(0.01 + sigma(t) / 8),
         Eigen::Vector3d(0.001, 0.001, 0.002 + 0.02 * settled),
         Eigen::Vector3d::Constant((4 + 60 * settled) / 206264.8),

@@ -60,7 +60,7 @@ void ekf(benchmark::State& state) {
   const Trip trip = simulated_trip(kDuration, 1);
   EpochCounter counter;
   for ([[maybe_unused]] const auto _ : state) {
-    NavigationRun run(std::make_unique<EkfNavigator>(trip.noise, EkfOptions{}), aligner(trip),
+    NavigationRun run(std::make_unique<EkfNavigator>(trip.noise, Layout{}, EkfOptions{}), aligner(trip),
                       NavigationRunOptions{}, counter);
     process(trip, run);
   }
@@ -73,7 +73,7 @@ void batch(benchmark::State& state) {
   for ([[maybe_unused]] const auto _ : state) {
     counter.epochs = 0;
     const std::unique_ptr<Estimator> smoother = make_batch_smoother(
-        std::make_unique<EkfNavigator>(trip.noise, EkfOptions{}), FgoOptions{},
+        std::make_unique<EkfNavigator>(trip.noise, Layout{}, EkfOptions{}), FgoOptions{},
         PreintegrationModel::full, trip.noise, aligner(trip), NavigationRunOptions{}, counter);
     for (const Measurement& measurement : trip.measurements) smoother->process(measurement);
     Profile profile;

@@ -20,7 +20,7 @@ namespace foucault {
 namespace {
 
 std::unique_ptr<Navigator> make_navigator(const std::string& method, const ImuNoise& noise) {
-  if (method == "ekf") return std::make_unique<EkfNavigator>(noise, EkfOptions{});
+  if (method == "ekf") return std::make_unique<EkfNavigator>(noise, Layout{}, EkfOptions{});
   const std::map<std::string, PreintegrationModel> models{{"refined", PreintegrationModel::refined},
                                                           {"full", PreintegrationModel::full},
                                                           {"rough", PreintegrationModel::rough}};

@@ -45,24 +45,20 @@ struct NormalizedErrors {
   double position = 0, velocity = 0, attitude = 0;
 };
 
-Eigen::Matrix3d block(const Epoch& epoch, int row) {
-  return epoch.covariance.block<3, 3>(row, row);
-}
-
 NormalizedErrors normalized_errors(const Epoch& estimate, const Epoch& truth) {
   const Eigen::Vector3d attitude = so3::log(estimate.q_n_b.conjugate() * truth.q_n_b);
   const Eigen::Vector3d position = ned_offset(estimate.position, truth.position);
   const Eigen::Vector3d velocity = truth.velocity_n - estimate.velocity_n;
-  return {normalized_square(position, block(estimate, error_state::kPosition)).value(),
-          normalized_square(velocity, block(estimate, error_state::kVelocity)).value(),
-          normalized_square(attitude, block(estimate, error_state::kAttitude)).value()};
+  return {normalized_square(position, estimate.covariance_of(block::position)).value(),
+          normalized_square(velocity, estimate.covariance_of(block::velocity)).value(),
+          normalized_square(attitude, estimate.covariance_of(block::attitude)).value()};
 }
 
 std::unique_ptr<Estimator> make_estimator(const std::string& method, const ImuNoise& noise,
                                           const Mounting& mounting, Sink& sink) {
   Aligner aligner(AlignmentOptions{}, noise, mounting);
-  if (method == "rts") return make_rts_smoother(noise, EkfOptions{}, std::move(aligner), {}, sink);
-  auto ekf = std::make_unique<EkfNavigator>(noise, EkfOptions{});
+  if (method == "rts") return make_rts_smoother(noise, Layout{}, EkfOptions{}, std::move(aligner), {}, sink);
+  auto ekf = std::make_unique<EkfNavigator>(noise, Layout{}, EkfOptions{});
   if (method == "batch")
     return make_batch_smoother(std::move(ekf), FgoOptions{}, PreintegrationModel::full, noise,
                                std::move(aligner), {}, sink);

@@ -26,7 +26,7 @@ namespace {
 constexpr double kDeg = 3.14159265358979323846 / 180;
 
 std::unique_ptr<Navigator> make_navigator(const std::string& method, const ImuNoise& noise) {
-  if (method == "ekf") return std::make_unique<EkfNavigator>(noise, EkfOptions{});
+  if (method == "ekf") return std::make_unique<EkfNavigator>(noise, Layout{}, EkfOptions{});
   const PreintegrationModel model =
       method == "full" ? PreintegrationModel::full : PreintegrationModel::refined;
   return std::make_unique<WindowNavigator>(FgoOptions{}, model, noise);
@@ -231,14 +231,14 @@ MeanNees mean_nees(const std::string& method, ScenarioOptions scenario, const Im
     estimator->finish();
     const Epoch& estimate = sink.last;
     const Epoch truth = source.truth(estimate.t_ns);
-    const auto normalized = [&](const Eigen::Vector3d& error, int row) {
-      return normalized_square(error, estimate.covariance.block<3, 3>(row, row)).value() / kRuns;
+    const auto normalized = [&](const Eigen::Vector3d& error, const NodeBlock& of) {
+      return normalized_square(error, estimate.covariance_of(of)).value() / kRuns;
     };
     mean.position +=
-        normalized(ned_offset(estimate.position, truth.position), error_state::kPosition);
-    mean.velocity += normalized(truth.velocity_n - estimate.velocity_n, error_state::kVelocity);
+        normalized(ned_offset(estimate.position, truth.position), block::position);
+    mean.velocity += normalized(truth.velocity_n - estimate.velocity_n, block::velocity);
     mean.attitude +=
-        normalized(so3::log(estimate.q_n_b.conjugate() * truth.q_n_b), error_state::kAttitude);
+        normalized(so3::log(estimate.q_n_b.conjugate() * truth.q_n_b), block::attitude);
   }
   return mean;
 }

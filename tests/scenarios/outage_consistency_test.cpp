@@ -25,8 +25,8 @@ constexpr int kTrips = 3;
 std::unique_ptr<Estimator> make_estimator(const std::string& method, const ImuNoise& noise,
                                           const Mounting& mounting, Sink& sink) {
   Aligner aligner(AlignmentOptions{}, noise, mounting);
-  if (method == "rts") return make_rts_smoother(noise, EkfOptions{}, std::move(aligner), {}, sink);
-  return std::make_unique<NavigationRun>(std::make_unique<EkfNavigator>(noise, EkfOptions{}),
+  if (method == "rts") return make_rts_smoother(noise, Layout{}, EkfOptions{}, std::move(aligner), {}, sink);
+  return std::make_unique<NavigationRun>(std::make_unique<EkfNavigator>(noise, Layout{}, EkfOptions{}),
                                          std::move(aligner), NavigationRunOptions{}, sink);
 }
 

@@ -21,7 +21,7 @@ namespace {
 using Maker = std::function<std::unique_ptr<Estimator>(const ImuNoise&, Aligner, Sink&)>;
 
 std::unique_ptr<Navigator> filter(const ImuNoise& noise) {
-  return std::make_unique<EkfNavigator>(noise, EkfOptions{});
+  return std::make_unique<EkfNavigator>(noise, Layout{}, EkfOptions{});
 }
 
 std::unique_ptr<Navigator> window(PreintegrationModel model, const ImuNoise& noise) {
@@ -44,7 +44,7 @@ Maker batch(PreintegrationModel model, bool from_window) {
 }
 
 std::unique_ptr<Estimator> rts(const ImuNoise& noise, Aligner aligner, Sink& sink) {
-  return make_rts_smoother(noise, EkfOptions{}, std::move(aligner), {}, sink);
+  return make_rts_smoother(noise, Layout{}, EkfOptions{}, std::move(aligner), {}, sink);
 }
 
 /// RMS of the outages' maximum horizontal errors [m].

@@ -41,7 +41,7 @@ Epoch some_epoch() {
   epoch.q_n_b = so3::from_euler({0.1, -0.2, 5.0});
   epoch.bias.gyro = {1e-5, -2e-5, 3e-5};
   epoch.bias.accel = {1e-3, -2e-3, 3e-3};
-  for (int i = 0; i < error_state::kSize; ++i) epoch.covariance(i, i) = (i + 1) * (i + 1) * 1e-8;
+  for (int i = 0; i < kNodeSize; ++i) epoch.covariance(i, i) = (i + 1) * (i + 1) * 1e-8;
   return epoch;
 }
 

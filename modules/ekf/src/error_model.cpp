@@ -124,66 +124,66 @@ StateVector driving_variance(const MotionIntegrals& integrals, const ProcessNois
 /// Puts the closed form of a Gauss-Markov process in the place of its series.
 void set_markov(int row, int size, double dt, const MarkovBias& process, Transition& t) {
   const double variance = process.sigma * process.sigma;
-  t.phi.block(row, row, size, size).setZero();
-  t.phi.block(row, row, size, size).diagonal().setConstant(std::exp(-dt / process.tau));
-  t.q.block(row, row, size, size).setZero();
-  t.q.block(row, row, size, size)
-      .diagonal()
-      .setConstant(-std::expm1(-2 * dt / process.tau) * variance);
+  t.phi.decay.segment(row - kMotion, size).setConstant(std::exp(-dt / process.tau));
+  t.q.diagonal().segment(row, size).setConstant(-std::expm1(-2 * dt / process.tau) * variance);
 }
 
-/// The rows of position, velocity and attitude. Those of the sensors' errors below hold nothing but
-/// their decay on the diagonal, so that products come down to these rows.
-constexpr int kMotion = block::gyro_bias.offset;
-using MotionRows =
-    Eigen::Matrix<double, kMotion, Eigen::Dynamic, Eigen::ColMajor, kMotion, kMostSize>;
-
-/// X times a matrix of `rows` above the diagonal `decay`.
-MotionRows times(const MotionRows& X, const MotionRows& rows, const StateVector& decay) {
+MotionRows times(const MotionRows& X, const Phi& phi) {
+  const Eigen::Index rest = phi.decay.size();
   MotionRows out(kMotion, X.cols());
-  out.noalias() = X.leftCols<kMotion>() * rows;
-  out.rightCols(decay.size()) += X.rightCols(decay.size()) * decay.asDiagonal();
+  out.noalias() = X.leftCols<kMotion>() * phi.motion;
+  out.rightCols(rest) += X.rightCols(rest) * phi.decay.asDiagonal();
   return out;
 }
 
-/// Exponential series of the dynamics scaled by `share`, to the third order: rows, and diagonal of
-/// the rest.
-struct Series {
-  MotionRows rows;
-  StateVector diagonal;
-};
+/// Powers of the dynamics, from the first to the third.
 struct Powers {
-  MotionRows first, second, third;
-  StateVector decay;
+  Phi first;
+  MotionRows second, third;
 };
-Series series(const Powers& a, double share) {
+
+/// Exponential series of the dynamics scaled by `share`, to the third order.
+Phi series(const Powers& a, double share) {
   const double s2 = share * share / 2;
   const double s3 = share * share * share / 6;
-  Series out;
-  out.rows = share * a.first + s2 * a.second + s3 * a.third;
-  out.rows.leftCols<kMotion>().diagonal().array() += 1;
-  const auto d = a.decay.array();
-  out.diagonal = 1 + share * d + s2 * d * d + s3 * d * d * d;
+  Phi out;
+  out.motion = share * a.first.motion + s2 * a.second + s3 * a.third;
+  out.motion.leftCols<kMotion>().diagonal().array() += 1;
+  const auto d = a.first.decay.array();
+  out.decay = 1 + share * d + s2 * d * d + s3 * d * d * d;
   return out;
 }
 
 /// Adds weight * S V S^T, V diagonal. The rest's own block is set_markov()'s.
-void add_driven(double weight, const Series& s, const StateVector& variance, StateMatrix& q) {
-  const Eigen::Index rest = s.diagonal.size();
-  const MotionRows driven = weight * s.rows * variance.asDiagonal();
-  q.topLeftCorner<kMotion, kMotion>().noalias() += driven * s.rows.transpose();
-  q.topRightCorner(kMotion, rest) += driven.rightCols(rest) * s.diagonal.asDiagonal();
+void add_driven(double weight, const Phi& s, const StateVector& variance, StateMatrix& q) {
+  const Eigen::Index rest = s.decay.size();
+  const MotionRows driven = weight * s.motion * variance.asDiagonal();
+  q.topLeftCorner<kMotion, kMotion>().noalias() += driven * s.motion.transpose();
+  q.topRightCorner(kMotion, rest) += driven.rightCols(rest) * s.decay.asDiagonal();
 }
 
 /// Attitude errors in b: at the begin dtheta = C0' psi, at the end dtheta = C1' psi.
 void turn_attitude_to_body(const Eigen::Matrix3d& C0, const Eigen::Matrix3d& C1, Transition& t) {
-  rows_of(t.phi, attitude) = (C1.transpose() * rows_of(t.phi, attitude)).eval();
-  columns_of(t.phi, attitude) = (columns_of(t.phi, attitude) * C0).eval();
+  MotionRows& phi = t.phi.motion;
+  rows_of(phi, attitude) = (C1.transpose() * rows_of(phi, attitude)).eval();
+  columns_of(phi, attitude) = (columns_of(phi, attitude) * C0).eval();
   rows_of(t.q, attitude) = (C1.transpose() * rows_of(t.q, attitude)).eval();
   columns_of(t.q, attitude) = (columns_of(t.q, attitude) * C1).eval();
 }
 
 }  // namespace
+
+StateMatrix Phi::full() const {
+  const Eigen::Index size = motion.cols();
+  StateMatrix phi = StateMatrix::Zero(size, size);
+  phi.topRows<kMotion>() = motion;
+  phi.diagonal().tail(decay.size()) = decay;
+  return phi;
+}
+
+Phi operator*(const Phi& later, const Phi& earlier) {
+  return {times(later.motion, earlier), later.decay.cwiseProduct(earlier.decay)};
+}
 
 void MotionIntegrals::add(const ImuIncrement& increment, const Eigen::Matrix3d& R_n_b_begin,
                           const Eigen::Matrix3d& R_n_b_end, const ImuNoise& noise) {
@@ -206,19 +206,17 @@ Transition transition(const MotionIntegrals& integrals, const NavState& begin,
   const Place place(displaced(begin.position, 0.5 * integrals.dt * v_n, Place(begin.position)));
   const StateMatrix dynamics = mean_dynamics(integrals, place, v_n, noise);
   const Eigen::Index rest = dynamics.rows() - kMotion;
-  Powers a{dynamics.topRows<kMotion>(), {}, {}, dynamics.diagonal().tail(rest)};
-  a.second = times(a.first, a.first, a.decay);
-  a.third = times(a.second, a.first, a.decay);
-  const Series whole = series(a, 1);
-  const Series half = series(a, 0.5);  // from mid-interval to its end
+  Powers a{{dynamics.topRows<kMotion>(), dynamics.diagonal().tail(rest)}, {}, {}};
+  a.second = times(a.first.motion, a.first);
+  a.third = times(a.second, a.first);
+  const Phi half = series(a, 0.5);  // from mid-interval to its end
 
   Transition t;
-  t.phi = StateMatrix::Zero(dynamics.rows(), dynamics.cols());
-  t.phi.topRows<kMotion>() = whole.rows;
+  t.phi = series(a, 1);
   const StateVector variance = driving_variance(integrals, noise);
   t.q = StateMatrix::Zero(dynamics.rows(), dynamics.cols());
   add_driven(4.0 / 6, half, variance, t.q);
-  add_driven(1.0 / 6, whole, variance, t.q);
+  add_driven(1.0 / 6, t.phi, variance, t.q);
   t.q.diagonal() += variance / 6;
   t.q.bottomLeftCorner(rest, kMotion) = t.q.topRightCorner(kMotion, rest).transpose();
 
@@ -233,8 +231,8 @@ Transition transition(const MotionIntegrals& integrals, const NavState& begin,
 
 StateMatrix propagated(const StateMatrix& covariance, const Transition& t) {
   const Eigen::Index rest = covariance.rows() - kMotion;
-  const MotionRows rows = t.phi.topRows<kMotion>();
-  const StateVector decay = t.phi.diagonal().tail(rest);
+  const MotionRows& rows = t.phi.motion;
+  const StateVector& decay = t.phi.decay;
   MotionRows carried(kMotion, covariance.cols());
   carried.noalias() = rows * covariance;
   StateMatrix next = t.q;

@@ -16,7 +16,9 @@ struct Smoothed {
 Smoothed step_back(const RtsNode& node, const RtsNode& next, const Smoothed& next_smoothed) {
   const StateMatrix filtered = node.filtered_covariance.full();
   const StateMatrix predicted = next.predicted_covariance.full();
-  const StateMatrix carried = next.phi * filtered;
+  StateMatrix carried(filtered.rows(), filtered.cols());
+  carried << next.motion * filtered,
+      next.decay.asDiagonal() * filtered.bottomRows(next.decay.size());
   const StateMatrix gain = predicted.ldlt().solve(carried).transpose();
   const StateVector found = boxminus(next_smoothed.state, next.predicted);
   const StateMatrix change = next_smoothed.covariance - predicted;
@@ -32,17 +34,17 @@ SmoothedEpoch result_of(const RtsNode& node, const Smoothed& smoothed) {
 
 }  // namespace
 
-std::vector<SmoothedEpoch> smooth(std::deque<RtsNode> nodes) {
-  std::vector<SmoothedEpoch> results(nodes.size());
+std::deque<SmoothedEpoch> smooth(std::deque<RtsNode> nodes) {
+  std::deque<SmoothedEpoch> results;
   Smoothed smoothed;
   RtsNode next;
-  for (std::size_t k = nodes.size(); k-- > 0;) {
+  while (!nodes.empty()) {
     RtsNode node = std::move(nodes.back());
     nodes.pop_back();
-    const bool ends_run = k + 1 == results.size() || next.begins_run;
+    const bool ends_run = results.empty() || next.begins_run;
     smoothed = ends_run ? Smoothed{node.filtered, node.filtered_covariance.full()}
                         : step_back(node, next, smoothed);
-    results[k] = result_of(node, smoothed);
+    results.push_front(result_of(node, smoothed));
     next = std::move(node);
   }
   return results;
@@ -80,14 +82,17 @@ bool RtsRecorder::at_node() const {
   return !nodes_.empty() && nodes_.back().filtered.t_ns == state().t_ns;
 }
 
-void RtsRecorder::stepped(const StateMatrix& phi) { phi_ = (phi * phi_).eval(); }
+void RtsRecorder::stepped(const ekf::Phi& phi) { phi_ = phi * phi_; }
 
 void RtsRecorder::add_node() {
   RtsNode& node = nodes_.emplace_back();
   node.predicted = node.filtered = state();
   node.predicted_covariance = node.filtered_covariance = PackedSymmetric(covariance());
-  node.phi = phi_;
-  phi_ = StateMatrix::Identity(covariance().rows(), covariance().cols());
+  node.motion = phi_.motion;
+  node.decay = phi_.decay;
+  const Eigen::Index size = kNodeSize + state().slow.size();
+  phi_.motion = ekf::MotionRows::Identity(ekf::kMotion, size);
+  phi_.decay = StateVector::Ones(size - ekf::kMotion);
 }
 
 }  // namespace foucault

@@ -81,7 +81,7 @@ Matrix analytic_transition(NavState state, const std::vector<ImuIncrement>& incr
     integrals.add(clean, R_begin, state.q_n_b.toRotationMatrix(), noise.imu);
     previous = clean;
     if (++count % increments_per_step == 0) {
-      phi = (transition(integrals, begin, state, noise).phi * phi).eval();
+      phi = (transition(integrals, begin, state, noise).phi.full() * phi).eval();
       begin = state;
       integrals = {};
     }
@@ -162,7 +162,8 @@ TEST(ErrorModel, MarkovProcessesAreInClosedForm) {
   const Eigen::Matrix3d R = begin.q_n_b.toRotationMatrix();
   for (const ImuIncrement& increment : trip.increments()) integrals.add(increment, R, R, noise.imu);
   const ekf::Transition t = transition(integrals, begin, begin, noise);
-  EXPECT_NEAR(t.phi(9, 9), std::exp(-0.1), 1e-15);
+  const StateMatrix phi = t.phi.full();
+  EXPECT_NEAR(phi(9, 9), std::exp(-0.1), 1e-15);
   EXPECT_NEAR(t.q(9, 9) / 4e-6, 1 - std::exp(-0.2), 1e-12);
   EXPECT_NEAR(t.q(14, 14) / 9e-4, 1 - std::exp(-0.2), 1e-12);
 }
@@ -181,10 +182,11 @@ TEST(ErrorModel, TurnOnValuesDoNotDecay) {
   const Eigen::Matrix3d R = begin.q_n_b.toRotationMatrix();
   for (const ImuIncrement& increment : trip.increments()) integrals.add(increment, R, R, noise.imu);
   const ekf::Transition t = transition(integrals, begin, begin, noise);
-  EXPECT_NEAR(t.phi(9, 9), std::exp(-0.1 / 101), 1e-15);
+  const StateMatrix phi = t.phi.full();
+  EXPECT_NEAR(phi(9, 9), std::exp(-0.1 / 101), 1e-15);
   // The driving noise is that of the variation, but for the decay over half a second.
   EXPECT_NEAR(t.q(9, 9), 2 * 1e-6 / 5 * 0.5, 2e-10);
-  EXPECT_EQ(t.phi(12, 12), 1);
+  EXPECT_EQ(phi(12, 12), 1);
   EXPECT_EQ(t.q(12, 12), 0);
 }
 

@@ -42,6 +42,8 @@ LinearProblem random_problem() {
   for (int k = 0; k < LinearProblem::kNodes; ++k) {
     NodeMatrix mix;
     for (int i = 0; i < 15; ++i) mix.col(i) = 0.2 * test::draw15(rng);
+    mix.bottomRows<15 - ekf::kMotion>() =
+        NodeMatrix(mix.diagonal().asDiagonal()).bottomRows<15 - ekf::kMotion>();
     p.phi.push_back(s.asDiagonal() * (NodeMatrix::Identity() + mix) * s.cwiseInverse().asDiagonal());
     p.Q.push_back(0.1 * test::random_covariance(rng, s));
     p.z.push_back(0.3 * test::draw3(rng));
@@ -66,7 +68,8 @@ std::deque<RtsNode> filtered(const LinearProblem& p) {
     if (k > 0) {
       x = (p.phi[k - 1] * x).eval();
       P = (p.phi[k - 1] * P * p.phi[k - 1].transpose() + p.Q[k - 1]).eval();
-      node.phi = p.phi[k - 1];
+      node.motion = p.phi[k - 1].topRows<ekf::kMotion>();
+      node.decay = p.phi[k - 1].diagonal().tail<15 - ekf::kMotion>();
     }
     node.predicted = boxplus(origin(), x);
     node.predicted_covariance = PackedSymmetric(P);
@@ -108,7 +111,7 @@ Batch least_squares(const LinearProblem& p) {
 
 TEST(Rts, EqualsBatchLeastSquaresOnALinearProblem) {
   const LinearProblem p = random_problem();
-  const std::vector<SmoothedEpoch> nodes = smooth(filtered(p));
+  const std::deque<SmoothedEpoch> nodes = smooth(filtered(p));
   const Batch batch = least_squares(p);
   const NodeVector units = sigmas().cwiseInverse();
   for (int k = 0; k < LinearProblem::kNodes; ++k) {
@@ -126,8 +129,8 @@ TEST(Rts, EqualsBatchLeastSquaresOnALinearProblem) {
 TEST(Rts, NothingIsCarriedBackOverAStart) {
   std::deque<RtsNode> nodes = filtered(random_problem());
   nodes[3].begins_run = true;
-  const std::vector<SmoothedEpoch> alone = smooth({nodes.begin(), nodes.begin() + 3});
-  const std::vector<SmoothedEpoch> both = smooth(nodes);
+  const std::deque<SmoothedEpoch> alone = smooth({nodes.begin(), nodes.begin() + 3});
+  const std::deque<SmoothedEpoch> both = smooth(nodes);
   for (int k = 0; k < 3; ++k) {
     EXPECT_EQ(boxminus(both[k].state, alone[k].state).norm(), 0);
     EXPECT_EQ(alone[k].covariance.full(), both[k].covariance.full());

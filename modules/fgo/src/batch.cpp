@@ -125,9 +125,8 @@ void BatchRecorder::close_interval() {
   chains_.back().intervals.push_back(std::move(open_));
 }
 
-std::vector<SmoothedEpoch> BatchRecorder::smoothed() {
-  std::vector<SmoothedEpoch> out;
-  out.reserve(passages_.size());
+std::deque<SmoothedEpoch> BatchRecorder::smoothed() {
+  std::deque<SmoothedEpoch> out;
   for (BatchChain& chain : chains_) {
     BatchSolution solution = solve(chain, context_, options_, noise_);
     for (std::size_t k = 0; k < chain.nodes.size(); ++k) {

@@ -40,7 +40,7 @@ NodeVector error_between(double s, double length, const SmoothedEpoch& begin,
   return error;
 }
 
-void throw_if_unsound(const std::vector<SmoothedEpoch>& nodes) {
+void throw_if_unsound(const std::deque<SmoothedEpoch>& nodes) {
   for (const SmoothedEpoch& node : nodes) {
     const std::optional<std::string> part = unsound_part(node.epoch());
     if (!part) continue;
@@ -91,7 +91,7 @@ void Smoother::Keeper::notice(const Notice& notice) { kept_.emplace_back(notice)
 void Smoother::Keeper::give_out() {
   recording_.mark();  // so that every epoch has a node after it
   const StageTimer timer(Stage::smooth);
-  const std::vector<SmoothedEpoch> nodes = recording_.smoothed();
+  const std::deque<SmoothedEpoch> nodes = recording_.smoothed();
   throw_if_unsound(nodes);
   const auto give = Overloaded{
       [&](const NodeEpoch& e) { sink_.epoch(nodes[e.node].epoch()); },

@@ -10,7 +10,7 @@
 namespace foucault {
 namespace {
 
-using namespace error_state;
+using namespace block;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 using testing::Drive;
@@ -48,7 +48,7 @@ Outcome align(const DriveSimulator& simulator, const Sensors& sensors, const Imu
   return {std::nullopt, 0, aligner.why_not()};
 }
 
-/// Truth minus estimate in the order of error_state.
+/// Truth minus estimate by the blocks of a node.
 NodeVector error_of(const Epoch& epoch, const Truth& truth, const ImuBias& bias) {
   NodeVector error;
   error << LocalFrame(epoch.position).to_local(truth.position), truth.velocity_n - epoch.velocity_n,
@@ -64,7 +64,7 @@ double heading_error(const Epoch& epoch, const Truth& truth, const Quaterniond& 
 
 double heading_sigma(const Epoch& epoch) {
   const Vector3d down_b = epoch.q_n_b.conjugate() * Vector3d::UnitZ();
-  return std::sqrt(down_b.dot(epoch.covariance.block<3, 3>(kAttitude, kAttitude) * down_b));
+  return std::sqrt(down_b.dot(epoch.covariance_of(block::attitude) * down_b));
 }
 
 TEST(AlignmentAtRest, WithPerfectSensorsLandsOnTheTruthAtTheFirstFix) {
@@ -76,12 +76,12 @@ TEST(AlignmentAtRest, WithPerfectSensorsLandsOnTheTruthAtTheFirstFix) {
   const Epoch& epoch = *outcome.initial;
   EXPECT_EQ(epoch.t_ns, DriveSimulator::kStart);
   const NodeVector error = error_of(epoch, simulator.truth(epoch.t_ns), {});
-  EXPECT_LT(error.segment<3>(kPosition).norm(), 1e-4);
-  EXPECT_LT(error.segment<3>(kVelocity).norm(), 1e-12);
+  EXPECT_LT(part(error, position).norm(), 1e-4);
+  EXPECT_LT(part(error, velocity).norm(), 1e-12);
   // Carrying the attitude the Earth's horizontal rate counts as bias: 1e-5 rad in 20 s.
-  EXPECT_LT(error.segment<3>(kAttitude).norm(), 1e-4);
-  EXPECT_LT(error.segment<3>(kGyroBias).norm(), 1e-8);
-  EXPECT_LT(error.segment<3>(kAccelBias).norm(), 1e-5);
+  EXPECT_LT(part(error, block::attitude).norm(), 1e-4);
+  EXPECT_LT(part(error, gyro_bias).norm(), 1e-8);
+  EXPECT_LT(part(error, accel_bias).norm(), 1e-5);
 }
 
 TEST(AlignmentAtRest, WorksForAnyMounting) {
@@ -94,8 +94,8 @@ TEST(AlignmentAtRest, WorksForAnyMounting) {
     const Outcome outcome = align(simulator, sensors, noise_of(sensors, 1e-4, 1e-2));
     ASSERT_TRUE(outcome.initial) << rpy.transpose() << outcome.why_not;
     const NodeVector error = error_of(*outcome.initial, simulator.truth(outcome.initial->t_ns), {});
-    EXPECT_LT(error.segment<3>(kAttitude).norm(), 1e-4) << rpy.transpose();
-    EXPECT_LT(error.segment<3>(kPosition).norm(), 1e-3) << rpy.transpose();
+    EXPECT_LT(part(error, block::attitude).norm(), 1e-4) << rpy.transpose();
+    EXPECT_LT(part(error, position).norm(), 1e-3) << rpy.transpose();
   }
 }
 
@@ -113,15 +113,15 @@ double square(double x) { return x * x; }
 void add_run(Consistency& sum, const Epoch& epoch, const Truth& truth, const ImuBias& bias) {
   const NodeVector error = error_of(epoch, truth, bias);
   const Eigen::Matrix3d R = epoch.q_n_b.toRotationMatrix();
-  const Vector3d attitude = R * error.segment<3>(kAttitude);
+  const Vector3d attitude = R * part(error, block::attitude);
   const Eigen::Matrix3d attitude_P =
-      R * epoch.covariance.block<3, 3>(kAttitude, kAttitude) * R.transpose();
+      R * epoch.covariance_of(block::attitude) * R.transpose();
   for (int axis = 0; axis < 3; ++axis) {
     const double a = square(attitude[axis]) / attitude_P(axis, axis);
     const double g =
-        square(error[kGyroBias + axis]) / epoch.covariance(kGyroBias + axis, kGyroBias + axis);
+        square(part(error, gyro_bias)[axis]) / square(epoch.sigma_of(gyro_bias)[axis]);
     const double v =
-        square(error[kVelocity + axis]) / epoch.covariance(kVelocity + axis, kVelocity + axis);
+        square(part(error, velocity)[axis]) / square(epoch.sigma_of(velocity)[axis]);
     sum.attitude_n[axis] += a;
     sum.gyro_bias[axis] += g;
     sum.velocity += v / 3;
@@ -198,10 +198,10 @@ TEST(AlignmentAtRest, LevelErrorAndAccelerometerBiasAreTied) {
   const Vector3d up_b = outcome.initial->q_n_b.conjugate() * Vector3d(0, 0, -1);
   for (const Vector3d& axis : {Vector3d(1, 0, 0), Vector3d(0, 1, 0)}) {
     Eigen::Matrix<double, 1, 15> H = Eigen::Matrix<double, 1, 15>::Zero();
-    H.segment<3>(kAttitude) = g * axis.cross(up_b);  // of up x dtheta
-    H.segment<3>(kAccelBias) = axis;
+    part(H, block::attitude) = g * axis.cross(up_b);  // of up x dtheta
+    part(H, accel_bias) = axis;
     const double tied = std::sqrt((H * P * H.transpose())(0, 0));
-    const double bias = std::sqrt(P(kAccelBias, kAccelBias));
+    const double bias = std::sqrt(part(P, accel_bias, accel_bias)(0, 0));
     EXPECT_LT(tied, 0.05 * bias);
     EXPECT_NEAR(bias, 0.015, 0.001);
   }
@@ -227,9 +227,9 @@ TEST(AlignmentWhileMoving, WithPerfectSensorsLandsOnTheTruth) {
   const Outcome outcome = align(simulator, sensors, noise_of(sensors, 1e-4, 1e-2));
   ASSERT_TRUE(outcome.initial) << outcome.why_not;
   const NodeVector error = error_of(*outcome.initial, simulator.truth(outcome.initial->t_ns), {});
-  EXPECT_LT(error.segment<3>(kPosition).norm(), 1e-3);
-  EXPECT_LT(error.segment<3>(kVelocity).norm(), 0.05);
-  EXPECT_LT(error.segment<3>(kAttitude).norm(), 0.1 * kDeg);
+  EXPECT_LT(part(error, position).norm(), 1e-3);
+  EXPECT_LT(part(error, velocity).norm(), 0.05);
+  EXPECT_LT(part(error, block::attitude).norm(), 0.1 * kDeg);
 }
 
 TEST(AlignmentWhileMoving, ErrorsStayWithinTheirSigmas) {
@@ -393,7 +393,7 @@ TEST(Alignment, HeadingAloneCompletesARest) {
   ASSERT_TRUE(outcome.initial) << outcome.why_not;
   const NodeVector error =
       error_of(*outcome.initial, simulator.truth(outcome.initial->t_ns), sensors.bias);
-  EXPECT_LT(error.segment<3>(kAttitude).norm(), 0.02 * kDeg);
+  EXPECT_LT(part(error, block::attitude).norm(), 0.02 * kDeg);
   EXPECT_NEAR(heading_sigma(*outcome.initial), 2 * kDeg, 1e-3 * kDeg);
 }
 

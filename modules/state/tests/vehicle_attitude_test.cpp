@@ -29,7 +29,7 @@ TEST(VehicleAttitude, SigmaFollowsTheMounting) {
   mounting.q_v_b = Eigen::AngleAxisd(kPi / 2, Eigen::Vector3d::UnitZ());
   Epoch epoch;
   epoch.q_n_b = mounting.q_v_b;  // level, north
-  epoch.covariance.diagonal().segment<3>(error_state::kAttitude) << 1e-4, 4e-4, 9e-4;
+  part(epoch.covariance.diagonal(), block::attitude) << 1e-4, 4e-4, 9e-4;
   const VehicleAttitude attitude = vehicle_attitude(epoch, mounting);
   EXPECT_NEAR(attitude.sigma[0], 0.02, 1e-15);  // roll: about b's y
   EXPECT_NEAR(attitude.sigma[1], 0.01, 1e-15);
@@ -45,7 +45,7 @@ TEST(VehicleAttitude, SigmaIsThatOfSampledAttitudes) {
   epoch.q_n_b = so3::from_euler({0.3, 0.9, 2.5}) * mounting.q_v_b;
   Eigen::Matrix3d root;
   root << 2e-3, 0, 0, 1e-3, 3e-3, 0, -1e-3, 5e-4, 1e-3;
-  epoch.covariance.block<3, 3>(error_state::kAttitude, error_state::kAttitude) =
+  part(epoch.covariance, block::attitude, block::attitude) =
       root * root.transpose();
   const VehicleAttitude mean = vehicle_attitude(epoch, mounting);
 

@@ -43,7 +43,7 @@ class EkfNavigator : public Navigator {
   /// Brings the covariance to the current time.
   void catch_up();
   /// Told of every step of the covariance.
-  virtual void stepped(const StateMatrix& /*phi*/) {}
+  virtual void stepped(const ekf::Phi& /*phi*/) {}
 
  private:
   ekf::Transition pending() const;

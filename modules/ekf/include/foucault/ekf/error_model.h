@@ -33,9 +33,22 @@ struct MotionIntegrals {
            const Eigen::Matrix3d& R_n_b_end, const ImuNoise& noise);
 };
 
+/// A transition of errors. The rows of position, velocity and attitude are full; those of what
+/// drives them below hold nothing but its decay on the diagonal.
+constexpr int kMotion = block::gyro_bias.offset;
+using MotionRows =
+    Eigen::Matrix<double, kMotion, Eigen::Dynamic, Eigen::ColMajor, kMotion, kMostSize>;
+struct Phi {
+  MotionRows motion;
+  StateVector decay;
+
+  StateMatrix full() const;
+};
+Phi operator*(const Phi& later, const Phi& earlier);
+
 /// error(end) = phi * error(begin) + w, var w = q.
 struct Transition {
-  StateMatrix phi;
+  Phi phi;
   StateMatrix q;
 };
 
@@ -45,7 +58,7 @@ struct Transition {
 Transition transition(const MotionIntegrals& integrals, const NavState& begin, const NavState& end,
                       const ProcessNoise& noise);
 
-/// phi P phi' + q, by the rows of the motion and the diagonal that the rest of phi is.
+/// phi P phi' + q.
 StateMatrix propagated(const StateMatrix& covariance, const Transition& transition);
 
 }  // namespace foucault::ekf

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <deque>
-#include <vector>
 
 #include "foucault/ekf/ekf.h"
 #include "foucault/inertial/smoother.h"
@@ -17,12 +16,14 @@ struct RtsNode {
   PackedSymmetric predicted_covariance;
   NavState filtered;                     ///< after it; the same where nothing was measured
   PackedSymmetric filtered_covariance;
-  Eigen::MatrixXd phi;      ///< from the node before, at its filtered state
+  /// ekf::Phi from the node before, at its filtered state.
+  Eigen::MatrixXd motion;
+  Eigen::VectorXd decay;
   bool begins_run = false;  ///< nothing comes from the node before
 };
 
 /// The backward pass. One result a node; the nodes are used up on the way.
-std::vector<SmoothedEpoch> smooth(std::deque<RtsNode> nodes);
+std::deque<SmoothedEpoch> smooth(std::deque<RtsNode> nodes);
 
 /// The EKF, with a node left at the start and the end of a run, wherever something was measured, at
 /// every hold, and wherever marked.
@@ -39,16 +40,16 @@ class RtsRecorder : public EkfNavigator, public Recording {
   std::size_t mark() override;
   bool at_node() const override;
   std::size_t size() const override { return nodes_.size(); }
-  std::vector<SmoothedEpoch> smoothed() override { return smooth(std::move(nodes_)); }
+  std::deque<SmoothedEpoch> smoothed() override { return smooth(std::move(nodes_)); }
 
  protected:
-  void stepped(const StateMatrix& phi) override;
+  void stepped(const ekf::Phi& phi) override;
 
  private:
   void add_node();
 
   std::deque<RtsNode> nodes_;
-  StateMatrix phi_;  ///< since the last node
+  ekf::Phi phi_;  ///< since the last node
 };
 
 }  // namespace foucault

@@ -46,7 +46,7 @@ class BatchRecorder final : public Navigator, public Recording {
   std::size_t mark() override;
   bool at_node() const override { return integrator_ && integrator_->dt() == 0; }
   std::size_t size() const override { return passages_.size(); }
-  std::vector<SmoothedEpoch> smoothed() override;
+  std::deque<SmoothedEpoch> smoothed() override;
 
  private:
   /// What the forward run had at a node, without slow blocks.

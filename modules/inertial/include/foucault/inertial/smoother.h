@@ -41,7 +41,7 @@ class Recording {
   virtual std::size_t size() const = 0;
 
   /// One a node, in order. Called once, at the end.
-  virtual std::vector<SmoothedEpoch> smoothed() = 0;
+  virtual std::deque<SmoothedEpoch> smoothed() = 0;
 };
 
 /// Runs a recording navigator forward and gives out everything at finish(), epochs from all fixes.
