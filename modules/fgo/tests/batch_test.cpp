@@ -205,7 +205,7 @@ TEST_F(BatchTest, ConvergesFromAttitudesFarOff) {
       x = predict(x, pre, wuhan_earth());
       chain.nodes.push_back({pre.t_end_ns, x, {{gnss_position(fix_at(second + 1, 0.02))}}});
     }
-    const BatchSolution solution = solve(chain, context, FgoOptions{}, noise);
+    const BatchSolution solution = solve(chain, context, exact(), noise);
     const NodeVector e = boxminus(motion_.state(20), solution.x.back());
     EXPECT_LT(part(e, block::position).norm(), 0.15) << seed;
     EXPECT_LT(part(e, block::attitude).norm(), 0.02) << seed;
@@ -221,7 +221,7 @@ TEST_F(BatchTest, EndsWhereAWindowOverEverythingEnds) {
   const std::unique_ptr<BatchRecorder> batch = recorder();
   batch->start(initial(0.1));
   run(*batch, 25, 10, 15, [](int) {});
-  const std::vector<SmoothedEpoch> nodes = batch->smoothed();
+  const std::deque<SmoothedEpoch> nodes = batch->smoothed();
   ASSERT_EQ(nodes.size(), 26u);
   const Epoch a = nodes.back().epoch();
   const Epoch b = window.epoch();
@@ -243,7 +243,7 @@ TEST_F(BatchTest, ErrorsInAnOutageStayWithinTheirCovarianceAndBelowForward) {
     run(*batch, 35, 15, 26, [&](int second) {
       if (second == 25) forward = batch->epoch();
     });
-    const std::vector<SmoothedEpoch> nodes = batch->smoothed();
+    const std::deque<SmoothedEpoch> nodes = batch->smoothed();
     const NodeVector e = error(nodes[20].epoch());
     nees_sum += e.dot(nodes[20].epoch().covariance.ldlt().solve(e));
     smoothed_square += error(nodes[20].epoch()).head<2>().squaredNorm();
@@ -279,7 +279,7 @@ TEST_F(BatchTest, ANewStartIsANewChain) {
   reseed(3);
   batch->start(initial(0.1));
   run(*batch, 5, 99, 99, [](int) {});
-  const std::vector<SmoothedEpoch> nodes = batch->smoothed();
+  const std::deque<SmoothedEpoch> nodes = batch->smoothed();
   ASSERT_EQ(nodes.size(), 2 * before);
   for (std::size_t k = 0; k < before; ++k) {
     EXPECT_LT((error(nodes[k].epoch()) - error(nodes[before + k].epoch())).norm(), 1e-6);
@@ -307,7 +307,7 @@ TEST_F(BatchTest, LooseningBridgesAJumpOfTheState) {
       batch->update(gnss_position(fix));
       fixes.push_back(fix);
     }
-    const std::vector<SmoothedEpoch> nodes = batch->smoothed();
+    const std::deque<SmoothedEpoch> nodes = batch->smoothed();
     double largest = 0;
     for (std::size_t k = 0; k < fixes.size(); ++k) {
       const Epoch epoch = nodes[k + 1].epoch();
