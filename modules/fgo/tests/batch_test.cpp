@@ -33,6 +33,7 @@ struct ChainDrive : SlowDrive {
   explicit ChainDrive(const Layout& with = {})
       : context{frame_, PreintegrationModel::refined, with} {}
   void TestBody() override {}
+  using SlowDrive::fix_at;
 
   const GraphContext context;
 
@@ -178,6 +179,25 @@ TEST(Batch, ABiasThatMovedIsIntegratedAnew) {
   };
   EXPECT_LT(off(solved(wrong, true)), 0.01);
   EXPECT_GT(off(solved(wrong, false)), 0.1);  // first-order updates alone
+}
+
+TEST(Batch, RobustLossShrugsOffAnOutlier) {
+  ChainDrive drive;
+  const auto solved = [&](const char* robust, double off) {
+    BatchChain chain = drive.chain();
+    GnssFix outlier = drive.fix_at(4, 0.02);
+    outlier.antenna.height += off;
+    chain.nodes[4].observations = {{gnss_position(outlier)}};
+    FgoOptions options;
+    options.robust = robust;
+    options.max_iterations = 50;
+    return solve(chain, drive.context, options, test_noise()).x[4].p_w_b;
+  };
+  const Vector3d right = solved("none", 0);
+  EXPECT_GT((solved("none", 10) - right).norm(), 0.3);
+  for (const char* robust : {"huber", "cauchy"}) {
+    EXPECT_LT((solved(robust, 10) - right).norm(), 0.1) << robust;
+  }
 }
 
 /// Dead reckoning from an attitude off by tens of degrees, with increments known to 1e-5 m/s: the
