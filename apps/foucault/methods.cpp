@@ -35,7 +35,8 @@ std::unique_ptr<Estimator> drive(std::unique_ptr<Navigator> navigator, const Set
 }
 
 std::unique_ptr<Navigator> window(PreintegrationModel model, const Settings& settings) {
-  return std::make_unique<WindowNavigator>(settings.fgo, model, settings.imu.noise());
+  return std::make_unique<WindowNavigator>(settings.fgo, model, settings.imu.noise(),
+                                           settings.calibrate.layout());
 }
 
 std::unique_ptr<Navigator> filter(const Settings& settings) {
@@ -75,7 +76,8 @@ std::unique_ptr<Estimator> make_batch(const Settings& settings, const Mounting& 
   Aligner aligner(settings.alignment, settings.imu.noise(), mounting);
   return make_batch_smoother(first_estimate(settings), settings.fgo,
                              settings.batch.preintegration_model(), settings.imu.noise(),
-                             std::move(aligner), run_options(settings), sink);
+                             std::move(aligner), run_options(settings), sink,
+                             settings.calibrate.layout());
 }
 
 }  // namespace
@@ -92,11 +94,11 @@ const std::vector<Method>& methods() {
        make_window<PreintegrationModel::full>, Stage::preintegrate},
       {"rts",
        "the filter forward, then a smoother backward: every epoch from all fixes "
-       "(memory: 12 kB an epoch)",
+       "(memory: 6 kB an epoch)",
        make_rts, Stage::mechanize, kForever},
       {"batch",
        "one factor graph over the whole log: every epoch from all fixes "
-       "(memory: 55 kB an epoch)",
+       "(memory: 6 kB an epoch)",
        make_batch, Stage::propagate, kForever},
   };
   return all;

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <memory>
 #include <string>
 
@@ -41,8 +42,10 @@ class EpochAt : public Sink {
   int64_t until_ns_;
 };
 
+/// Squared by their covariance, and the squared distance.
 struct NormalizedErrors {
   double position = 0, velocity = 0, attitude = 0;
+  double metres = 0;
 };
 
 NormalizedErrors normalized_errors(const Epoch& estimate, const Epoch& truth) {
@@ -51,50 +54,59 @@ NormalizedErrors normalized_errors(const Epoch& estimate, const Epoch& truth) {
   const Eigen::Vector3d velocity = truth.velocity_n - estimate.velocity_n;
   return {normalized_square(position, estimate.covariance_of(block::position)).value(),
           normalized_square(velocity, estimate.covariance_of(block::velocity)).value(),
-          normalized_square(attitude, estimate.covariance_of(block::attitude)).value()};
+          normalized_square(attitude, estimate.covariance_of(block::attitude)).value(),
+          position.squaredNorm()};
 }
 
 std::unique_ptr<Estimator> make_estimator(const std::string& method, const ImuNoise& noise,
+                                          const NavigationRunOptions& options,
                                           const Mounting& mounting, Sink& sink) {
   Aligner aligner(AlignmentOptions{}, noise, mounting);
-  if (method == "rts") return make_rts_smoother(noise, Layout{}, EkfOptions{}, std::move(aligner), {}, sink);
+  if (method == "rts")
+    return make_rts_smoother(noise, Layout{}, EkfOptions{}, std::move(aligner), options, sink);
   auto ekf = std::make_unique<EkfNavigator>(noise, Layout{}, EkfOptions{});
   if (method == "batch")
     return make_batch_smoother(std::move(ekf), FgoOptions{}, PreintegrationModel::full, noise,
-                               std::move(aligner), {}, sink);
+                               std::move(aligner), options, sink);
   std::unique_ptr<Navigator> navigator = std::move(ekf);
   if (method == "full" || method == "refined") {
     const PreintegrationModel model =
         method == "full" ? PreintegrationModel::full : PreintegrationModel::refined;
     navigator = std::make_unique<WindowNavigator>(FgoOptions{}, model, noise);
   }
-  return std::make_unique<NavigationRun>(std::move(navigator), std::move(aligner),
-                                         NavigationRunOptions{}, sink);
+  return std::make_unique<NavigationRun>(std::move(navigator), std::move(aligner), options, sink);
 }
 
-NormalizedErrors run(const std::string& method, int seed) {
-  const ImuNoise noise = imu_preset("ADIS16465");
+/// What is simulated, and what is used of it.
+struct Experiment {
   ScenarioOptions scenario;
+  NavigationRunOptions options;
+};
+
+NormalizedErrors run(const std::string& method, Experiment experiment, int seed) {
+  const ImuNoise noise = imu_preset("ADIS16465");
+  ScenarioOptions& scenario = experiment.scenario;
   scenario.seed = seed;
   scenario.duration_s = kDuration;
   SimulatedSource source(scenario, noise);
   const bool smoother = method == "rts" || method == "batch";
   EpochAt sink(scenario.start_ns() + nanoseconds(smoother ? kSmootherAsked : kDuration));
   const std::unique_ptr<Estimator> estimator =
-      make_estimator(method, noise, source.mounting(), sink);
+      make_estimator(method, noise, experiment.options, source.mounting(), sink);
   while (const std::optional<Measurement> measurement = source.next())
     estimator->process(*measurement);
   estimator->finish();
   return normalized_errors(sink.last, source.truth(sink.last.t_ns));
 }
 
-NormalizedErrors mean_of_runs(const std::string& method) {
+NormalizedErrors mean_of_runs(const std::string& method, const Experiment& experiment = {}) {
   NormalizedErrors mean;
   for (int seed = 1; seed <= kRuns; ++seed) {
-    const NormalizedErrors errors = run(method, seed);
+    const NormalizedErrors errors = run(method, experiment, seed);
     mean.position += errors.position / kRuns;
     mean.velocity += errors.velocity / kRuns;
     mean.attitude += errors.attitude / kRuns;
+    mean.metres += errors.metres / kRuns;
   }
   ::testing::Test::RecordProperty("position", std::to_string(mean.position));
   ::testing::Test::RecordProperty("velocity", std::to_string(mean.velocity));
@@ -117,6 +129,23 @@ TEST_P(Consistency, MeanNeesOfFiftyRunsLiesInItsBand) {
   expect_in_band(mean.position);
   expect_in_band(mean.velocity);
   expect_in_band(mean.attitude);
+}
+
+/// Positions of a metre, velocities of 5 cm/s.
+TEST_P(Consistency, VelocitiesHelpAndKeepTheBand) {
+  Experiment experiment;
+  experiment.scenario.gnss_sigma_m = {1, 1, 1};
+  experiment.scenario.gnss_velocity_sigma_m_s = 0.05;
+  const NormalizedErrors without = mean_of_runs(GetParam(), experiment);
+  experiment.options.aids.gnss_velocity = "on";
+  const NormalizedErrors with = mean_of_runs(GetParam(), experiment);
+  EXPECT_LT(std::sqrt(with.metres), 0.8 * std::sqrt(without.metres));
+  expect_in_band(with.position);
+  expect_in_band(with.velocity);
+  expect_in_band(with.attitude);
+  std::printf("%s: %.3f m without, %.3f m with velocities; NEES %.2f %.2f %.2f\n", GetParam(),
+              std::sqrt(without.metres), std::sqrt(with.metres), with.position, with.velocity,
+              with.attitude);
 }
 
 }  // namespace

@@ -90,7 +90,8 @@ void RtsRecorder::add_node() {
   node.predicted_covariance = node.filtered_covariance = PackedSymmetric(covariance());
   node.motion = phi_.motion;
   node.decay = phi_.decay;
-  phi_ = ekf::Phi::identity(state_size(state().slow.size()));
+  phi_.motion.setIdentity(MotionByState::RowsAtCompileTime, state_size(state().slow.size()));
+  phi_.decay = sensor_part(StateVector(StateVector::Ones(state_size(state().slow.size()))));
 }
 
 }  // namespace foucault

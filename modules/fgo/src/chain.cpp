@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 namespace foucault {
 namespace {
@@ -10,27 +11,37 @@ namespace {
 using Eigen::Dynamic;
 using Eigen::Index;
 
+/// Reflects `length` rows from the diagonal of column k down so that nothing is left below it.
+template <int kLength, class Rows>
+void reflect_column(Rows& rows, Index k, Index length) {
+  constexpr int kMostLength = kLength == Dynamic ? kMostSize + 1 : kLength;
+  Eigen::Matrix<double, kLength, 1, Eigen::ColMajor, kMostLength, 1> v =
+      rows.col(k).template segment<kLength>(k, length);
+  const double norm = std::copysign(v.norm(), v[0]);
+  if (norm == 0) return;
+  rows.col(k).template segment<kLength>(k, length).setZero();
+  rows(k, k) = -norm;
+  v[0] += norm;
+  const double scale = 1 / (norm * v[0]);
+  for (Index j = k + 1; j < rows.cols(); ++j) {
+    auto column = rows.col(j).template segment<kLength>(k, length);
+    column -= (scale * v.dot(column)) * v;
+  }
+}
+
 /// Reflects `dense` rows over triangular ones below them into the upper triangle of the first
 /// `pivots` columns: in column k there is something in rows k to k + dense alone. Small rows keep
 /// their digits if the large ones stand above: measurements, over what is left of the past.
 template <int kDense, class Rows>
 void reflect(Rows& rows, Index dense, Index pivots) {
   constexpr int kLength = kDense == Dynamic ? Dynamic : kDense + 1;
-  constexpr int kMostLength = kDense == Dynamic ? kMostSize + 1 : kDense + 1;
-  for (Index k = 0; k < pivots; ++k) {
-    Eigen::Matrix<double, kLength, 1, Eigen::ColMajor, kMostLength, 1> v =
-        rows.col(k).template segment<kLength>(k, dense + 1);
-    const double norm = std::copysign(v.norm(), v[0]);
-    if (norm == 0) continue;
-    rows.col(k).template segment<kLength>(k, dense + 1).setZero();
-    rows(k, k) = -norm;
-    v[0] += norm;
-    const double scale = 1 / (norm * v[0]);
-    for (Index j = k + 1; j < rows.cols(); ++j) {
-      auto column = rows.col(j).template segment<kLength>(k, dense + 1);
-      column -= (scale * v.dot(column)) * v;
-    }
-  }
+  for (Index k = 0; k < pivots; ++k) reflect_column<kLength>(rows, k, dense + 1);
+}
+
+/// Reflects a node's rows into an upper triangle.
+template <class Rows, std::size_t... k>
+void reflect_node(Rows&& rows, std::index_sequence<k...> /*columns*/) {
+  (reflect_column<kNodeSize - static_cast<int>(k)>(rows, k, kNodeSize - k), ...);
 }
 
 /// Takes r + J d to what is known of d.
@@ -118,11 +129,15 @@ Elimination eliminate(const NodeInformation& first, const IntervalRows& interval
   throw_if_undetermined(out.R);
   out.A = rows.template block<kNode, Dynamic>(0, kNode, kNode, kNode + slow);
   out.a = rows.col(columns).head<kNode>();
-  out.rest = NodeInformation(slow);
+  // The interval's rows are as many as the node's: none of them is left for the border.
+  reflect_node(rows.bottomRightCorner(kNode, kNode + slow + 1),
+               std::make_index_sequence<kNode - 1>{});
+  out.rest.S.resize(kNode + slow, kNode + slow);
+  out.rest.S.topRows<kNode>() = rows.block(kNode, kNode, kNode, kNode + slow);
+  out.rest.S.bottomLeftCorner(slow, kNode).setZero();
   out.rest.S.bottomRightCorner(slow, slow) = first.S.bottomRightCorner(slow, slow);
-  out.rest.r.tail(slow) = first.r.tail(slow);
-  put_on_top<kNode>(rows.template block<kNode, Dynamic>(kNode, kNode, kNode, kNode + slow),
-                    rows.col(columns).template tail<kNode>(), out.rest);
+  out.rest.r.resize(kNode + slow);
+  out.rest.r << rows.col(columns).tail<kNode>(), first.r.tail(slow);
   return out;
 }
 

@@ -47,7 +47,7 @@ TEST_F(Border, BatchFindsWhatDoesNotChange) {
     BatchRecorder recorder = batch();
     recorder.start(initial(1));
     drive(recorder, 30, 18, 26);
-    const std::vector<SmoothedEpoch> nodes = recorder.smoothed();
+    const std::deque<SmoothedEpoch> nodes = recorder.smoothed();
     in_outage.add(whole_error(nodes[22].epoch()), nodes[22].epoch());
     end.add(whole_error(nodes.back().epoch()), nodes.back().epoch());
   }

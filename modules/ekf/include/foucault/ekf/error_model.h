@@ -35,14 +35,11 @@ struct MotionIntegrals {
 
 /// A transition of errors. The rows of position, velocity and attitude are full; those of what
 /// drives them below hold nothing but its decay on the diagonal.
-using MotionRows = MotionByState;
-constexpr int kMotion = MotionRows::RowsAtCompileTime;
 struct Phi {
-  MotionRows motion;
+  MotionByState motion;
   StateVector decay;
 
   StateMatrix full() const;
-  static Phi identity(Eigen::Index size);
 };
 Phi operator*(const Phi& later, const Phi& earlier);
 

@@ -15,14 +15,6 @@ class GnssPosition final : public Observation {
   Linearized linearize(const NavState& x, const Eigen::Vector3d& rate_b,
                        const Layout& layout) const override;
 
-  GnssFix fix() const {
-    GnssFix fix;
-    fix.antenna = antenna_;
-    fix.p_b_a = p_b_a_;
-    fix.position_covariance = covariance_n_;
-    return fix;
-  }
-
  private:
   Geodetic antenna_;
   Eigen::Vector3d p_b_a_;

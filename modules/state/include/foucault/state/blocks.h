@@ -131,11 +131,4 @@ struct ImuScale {
   Eigen::Vector3d accel = Eigen::Vector3d::Zero();
 };
 
-namespace error_state {
-constexpr int kPosition = 0, kVelocity = 3, kAttitude = 6, kGyroBias = 9, kAccelBias = 12,
-              kSize = 15;
-}
-using Vector15d = NodeVector;
-using Matrix15d = NodeMatrix;
-
 }  // namespace foucault
