@@ -60,12 +60,11 @@ Eigen::Matrix3d position_by_position(const Place& place, const Eigen::Vector3d& 
 /// Decay of the slow blocks, and what scale factors do to the motion.
 void add_slow_blocks(const MotionIntegrals& integrals, const Layout& layout, StateMatrix& a) {
   for (const SlowBlock& slow : layout.slow()) {
-    const int row = kNodeSize + slow.index;
-    a.diagonal().segment(row, slow.block.size).setConstant(-integrals.dt / slow.tau);
+    part(a.diagonal(), slow).setConstant(-integrals.dt / slow.tau);
     if (slow.block.name == block::gyro_scale.name)
-      rows_of(a, attitude).middleCols<3>(row) = -integrals.attitude_rate;
+      columns_of(rows_of(a, attitude), slow) = -integrals.attitude_rate;
     if (slow.block.name == block::accel_scale.name)
-      rows_of(a, velocity).middleCols<3>(row) = -integrals.attitude_force;
+      columns_of(rows_of(a, velocity), slow) = -integrals.attitude_force;
   }
 }
 
@@ -115,23 +114,33 @@ StateVector driving_variance(const MotionIntegrals& integrals, const ProcessNois
   part(variance, gyro_bias).setConstant(noise.imu.gyro_bias_power() * dt);
   part(variance, accel_bias).setConstant(noise.imu.accel_bias_power() * dt);
   for (const SlowBlock& slow : noise.layout.slow()) {
-    variance.segment(kNodeSize + slow.index, slow.block.size)
-        .setConstant(2 * dt / slow.tau * slow.sigma * slow.sigma);
+    part(variance, slow).setConstant(2 * dt / slow.tau * slow.sigma * slow.sigma);
   }
   return variance;
 }
 
 /// Puts the closed form of a Gauss-Markov process in the place of its series.
-void set_markov(int row, int size, double dt, const MarkovBias& process, Transition& t) {
+template <class AnyBlock>
+void set_markov(const AnyBlock& block, double dt, const MarkovBias& process, StateVector& decay,
+                StateMatrix& q) {
   const double variance = process.sigma * process.sigma;
-  t.phi.decay.segment(row - kMotion, size).setConstant(std::exp(-dt / process.tau));
-  t.q.diagonal().segment(row, size).setConstant(-std::expm1(-2 * dt / process.tau) * variance);
+  part(decay, block).setConstant(std::exp(-dt / process.tau));
+  part(q.diagonal(), block).setConstant(-std::expm1(-2 * dt / process.tau) * variance);
 }
 
-MotionRows times(const MotionRows& X, const Phi& phi) {
+void set_markov(const ProcessNoise& noise, double dt, Transition& t) {
+  StateVector decay(t.q.rows());
+  set_markov(gyro_bias, dt, gyro_markov_bias(noise.imu), decay, t.q);
+  set_markov(accel_bias, dt, accel_markov_bias(noise.imu), decay, t.q);
+  for (const SlowBlock& slow : noise.layout.slow())
+    set_markov(slow, dt, {slow.sigma, slow.tau}, decay, t.q);
+  t.phi.decay = sensor_part(decay);
+}
+
+MotionByState times(const MotionByState& X, const Phi& phi) {
   const Eigen::Index rest = phi.decay.size();
-  MotionRows out(kMotion, X.cols());
-  out.noalias() = X.leftCols<kMotion>() * phi.motion;
+  MotionByState out(kMotionSize, X.cols());
+  out.noalias() = X.leftCols<kMotionSize>() * phi.motion;
   out.rightCols(rest) += X.rightCols(rest) * phi.decay.asDiagonal();
   return out;
 }
@@ -139,7 +148,7 @@ MotionRows times(const MotionRows& X, const Phi& phi) {
 /// Powers of the dynamics, from the first to the third.
 struct Powers {
   Phi first;
-  MotionRows second, third;
+  MotionByState second, third;
 };
 
 /// Exponential series of the dynamics scaled by `share`, to the third order.
@@ -148,7 +157,7 @@ Phi series(const Powers& a, double share) {
   const double s3 = share * share * share / 6;
   Phi out;
   out.motion = share * a.first.motion + s2 * a.second + s3 * a.third;
-  out.motion.leftCols<kMotion>().diagonal().array() += 1;
+  out.motion.leftCols<kMotionSize>().diagonal().array() += 1;
   const auto d = a.first.decay.array();
   out.decay = 1 + share * d + s2 * d * d + s3 * d * d * d;
   return out;
@@ -157,14 +166,14 @@ Phi series(const Powers& a, double share) {
 /// Adds weight * S V S^T, V diagonal. The rest's own block is set_markov()'s.
 void add_driven(double weight, const Phi& s, const StateVector& variance, StateMatrix& q) {
   const Eigen::Index rest = s.decay.size();
-  const MotionRows driven = weight * s.motion * variance.asDiagonal();
-  q.topLeftCorner<kMotion, kMotion>().noalias() += driven * s.motion.transpose();
-  q.topRightCorner(kMotion, rest) += driven.rightCols(rest) * s.decay.asDiagonal();
+  const MotionByState driven = weight * s.motion * variance.asDiagonal();
+  q.topLeftCorner<kMotionSize, kMotionSize>().noalias() += driven * s.motion.transpose();
+  q.topRightCorner(kMotionSize, rest) += driven.rightCols(rest) * s.decay.asDiagonal();
 }
 
 /// Attitude errors in b: at the begin dtheta = C0' psi, at the end dtheta = C1' psi.
 void turn_attitude_to_body(const Eigen::Matrix3d& C0, const Eigen::Matrix3d& C1, Transition& t) {
-  MotionRows& phi = t.phi.motion;
+  MotionByState& phi = t.phi.motion;
   rows_of(phi, attitude) = (C1.transpose() * rows_of(phi, attitude)).eval();
   columns_of(phi, attitude) = (columns_of(phi, attitude) * C0).eval();
   rows_of(t.q, attitude) = (C1.transpose() * rows_of(t.q, attitude)).eval();
@@ -176,7 +185,7 @@ void turn_attitude_to_body(const Eigen::Matrix3d& C0, const Eigen::Matrix3d& C1,
 StateMatrix Phi::full() const {
   const Eigen::Index size = motion.cols();
   StateMatrix phi = StateMatrix::Zero(size, size);
-  phi.topRows<kMotion>() = motion;
+  phi.topRows<kMotionSize>() = motion;
   phi.diagonal().tail(decay.size()) = decay;
   return phi;
 }
@@ -205,8 +214,8 @@ Transition transition(const MotionIntegrals& integrals, const NavState& begin,
   const Eigen::Vector3d v_n = 0.5 * (begin.velocity_n + end.velocity_n);
   const Place place(displaced(begin.position, 0.5 * integrals.dt * v_n, Place(begin.position)));
   const StateMatrix dynamics = mean_dynamics(integrals, place, v_n, noise);
-  const Eigen::Index rest = dynamics.rows() - kMotion;
-  Powers a{{dynamics.topRows<kMotion>(), dynamics.diagonal().tail(rest)}, {}, {}};
+  const Eigen::Index rest = dynamics.rows() - kMotionSize;
+  Powers a{{dynamics.topRows<kMotionSize>(), dynamics.diagonal().tail(rest)}, {}, {}};
   a.second = times(a.first.motion, a.first);
   a.third = times(a.second, a.first);
   const Phi half = series(a, 0.5);  // from mid-interval to its end
@@ -218,28 +227,24 @@ Transition transition(const MotionIntegrals& integrals, const NavState& begin,
   add_driven(4.0 / 6, half, variance, t.q);
   add_driven(1.0 / 6, t.phi, variance, t.q);
   t.q.diagonal() += variance / 6;
-  t.q.bottomLeftCorner(rest, kMotion) = t.q.topRightCorner(kMotion, rest).transpose();
+  t.q.bottomLeftCorner(rest, kMotionSize) = t.q.topRightCorner(kMotionSize, rest).transpose();
 
-  set_markov(gyro_bias.offset, gyro_bias.size, integrals.dt, gyro_markov_bias(noise.imu), t);
-  set_markov(accel_bias.offset, accel_bias.size, integrals.dt, accel_markov_bias(noise.imu), t);
-  for (const SlowBlock& slow : noise.layout.slow()) {
-    set_markov(kNodeSize + slow.index, slow.block.size, integrals.dt, {slow.sigma, slow.tau}, t);
-  }
+  set_markov(noise, integrals.dt, t);
   turn_attitude_to_body(begin.q_n_b.toRotationMatrix(), end.q_n_b.toRotationMatrix(), t);
   return t;
 }
 
 StateMatrix propagated(const StateMatrix& covariance, const Transition& t) {
-  const Eigen::Index rest = covariance.rows() - kMotion;
-  const MotionRows& rows = t.phi.motion;
+  const Eigen::Index rest = covariance.rows() - kMotionSize;
+  const MotionByState& rows = t.phi.motion;
   const StateVector& decay = t.phi.decay;
-  MotionRows carried(kMotion, covariance.cols());
+  MotionByState carried(kMotionSize, covariance.cols());
   carried.noalias() = rows * covariance;
   StateMatrix next = t.q;
-  next.topLeftCorner<kMotion, kMotion>().noalias() += carried * rows.transpose();
-  const MotionRows cross = carried.rightCols(rest) * decay.asDiagonal();
-  next.topRightCorner(kMotion, rest) += cross;
-  next.bottomLeftCorner(rest, kMotion) += cross.transpose();
+  next.topLeftCorner<kMotionSize, kMotionSize>().noalias() += carried * rows.transpose();
+  const MotionByState cross = carried.rightCols(rest) * decay.asDiagonal();
+  next.topRightCorner(kMotionSize, rest) += cross;
+  next.bottomLeftCorner(rest, kMotionSize) += cross.transpose();
   next.bottomRightCorner(rest, rest) +=
       decay.asDiagonal() * covariance.bottomRightCorner(rest, rest) * decay.asDiagonal();
   return 0.5 * (next + next.transpose());

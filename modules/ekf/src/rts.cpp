@@ -28,8 +28,8 @@ Smoothed step_back(const RtsNode& node, const RtsNode& next, const Smoothed& nex
 
 SmoothedEpoch result_of(const RtsNode& node, const Smoothed& smoothed) {
   return {smoothed.state, PackedSymmetric(smoothed.covariance),
-          boxminus(smoothed.state, node.predicted).head<kNodeSize>(),
-          boxminus(smoothed.state, node.filtered).head<kNodeSize>()};
+          node_part(boxminus(smoothed.state, node.predicted)),
+          node_part(boxminus(smoothed.state, node.filtered))};
 }
 
 }  // namespace
@@ -90,9 +90,8 @@ void RtsRecorder::add_node() {
   node.predicted_covariance = node.filtered_covariance = PackedSymmetric(covariance());
   node.motion = phi_.motion;
   node.decay = phi_.decay;
-  const Eigen::Index size = kNodeSize + state().slow.size();
-  phi_.motion = ekf::MotionRows::Identity(ekf::kMotion, size);
-  phi_.decay = StateVector::Ones(size - ekf::kMotion);
+  phi_.motion.setIdentity(MotionByState::RowsAtCompileTime, state_size(state().slow.size()));
+  phi_.decay = sensor_part(StateVector(StateVector::Ones(state_size(state().slow.size()))));
 }
 
 }  // namespace foucault

@@ -382,18 +382,6 @@ TEST(Ekf, AStartKeepsSlowBlocksAndTheirCorrelations) {
   EXPECT_EQ(other.epoch().covariance, learned.covariance);
 }
 
-TEST(CalibrateOptions, BlocksAreThoseThatAreOn) {
-  CalibrateOptions options;
-  EXPECT_EQ(options.layout().size(), kSize);
-  set_config("accel_scale=on", options);
-  set_config("accel_scale_sigma_ppm=300", options);
-  const Layout layout = options.layout();
-  EXPECT_EQ(layout.size(), kSize + 3);
-  EXPECT_DOUBLE_EQ(layout.slow().front().sigma, 3e-4);
-  set_config("mode=none", options);
-  EXPECT_EQ(options.layout().size(), kSize);
-}
-
 TEST(Ekf, OneAheadIsTheFilterWithOtherSigmas) {
   Fixture fixture;
   EkfNavigator filter = fixture.navigator();

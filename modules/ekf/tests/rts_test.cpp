@@ -42,8 +42,8 @@ LinearProblem random_problem() {
   for (int k = 0; k < LinearProblem::kNodes; ++k) {
     NodeMatrix mix;
     for (int i = 0; i < 15; ++i) mix.col(i) = 0.2 * test::draw15(rng);
-    mix.bottomRows<15 - ekf::kMotion>() =
-        NodeMatrix(mix.diagonal().asDiagonal()).bottomRows<15 - ekf::kMotion>();
+    mix.bottomRows<15 - kMotionSize>() =
+        NodeMatrix(mix.diagonal().asDiagonal()).bottomRows<15 - kMotionSize>();
     p.phi.push_back(s.asDiagonal() * (NodeMatrix::Identity() + mix) * s.cwiseInverse().asDiagonal());
     p.Q.push_back(0.1 * test::random_covariance(rng, s));
     p.z.push_back(0.3 * test::draw3(rng));
@@ -68,8 +68,8 @@ std::deque<RtsNode> filtered(const LinearProblem& p) {
     if (k > 0) {
       x = (p.phi[k - 1] * x).eval();
       P = (p.phi[k - 1] * P * p.phi[k - 1].transpose() + p.Q[k - 1]).eval();
-      node.motion = p.phi[k - 1].topRows<ekf::kMotion>();
-      node.decay = p.phi[k - 1].diagonal().tail<15 - ekf::kMotion>();
+      node.motion = p.phi[k - 1].topRows<kMotionSize>();
+      node.decay = p.phi[k - 1].diagonal().tail<15 - kMotionSize>();
     }
     node.predicted = boxplus(origin(), x);
     node.predicted_covariance = PackedSymmetric(P);

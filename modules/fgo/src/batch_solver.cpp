@@ -122,7 +122,7 @@ class BatchSolver {
 
 BatchSolver::Front BatchSolver::first_front() const {
   const Eigen::Index slow = at_.slow.size();
-  Front front{NodeInformation(slow), StateVector::Zero(kNodeSize + slow)};
+  Front front{NodeInformation(slow), StateVector::Zero(state_size(slow))};
   const StateRows prior = prior_.linearize(at_.x[0], at_.slow);
   front.information.add(prior);
   front.squares += prior.J.colwise().squaredNorm().transpose();
@@ -146,22 +146,22 @@ BatchSolver::Pivot BatchSolver::advance(std::size_t k, Front& front) const {
   const IntervalRows interval =
       chain_.intervals[k].factor->linearize(at_.x[k], at_.x[k + 1], at_.slow);
   const Eigen::Index slow = at_.slow.size();
-  front.squares.head<kNodeSize>() += interval.J_x0.colwise().squaredNorm().transpose();
+  node_part(front.squares) += interval.J_x0.colwise().squaredNorm().transpose();
   front.squares.tail(slow) += interval.J_slow.colwise().squaredNorm().transpose();
   const NodeVector damping = damp_node(front);
   const Elimination elimination = eliminate(front.information, interval);
   front.information = elimination.rest;
-  front.squares.head<kNodeSize>() = interval.J_x1.colwise().squaredNorm().transpose();
+  node_part(front.squares) = interval.J_x1.colwise().squaredNorm().transpose();
   add_own(k + 1, front);
   return {elimination, damping};
 }
 
 NodeVector BatchSolver::damp_node(Front& front) const {
   StateVector diagonal = StateVector::Zero(front.squares.size());
-  if (!region_) return diagonal.head<kNodeSize>();
-  diagonal.head<kNodeSize>() = (front.squares.head<kNodeSize>() / region_->radius).cwiseSqrt();
+  if (!region_) return node_part(diagonal);
+  node_part(diagonal) = (node_part(front.squares) / region_->radius).cwiseSqrt();
   damp(diagonal, front);
-  return diagonal.head<kNodeSize>();
+  return node_part(diagonal);
 }
 
 StateVector BatchSolver::damp_all(Front& front) const {
@@ -223,13 +223,13 @@ double BatchSolver::step() {
   const Eigen::Index slow = at_.slow.size();
   double twice = front.information.r.squaredNorm() + damping.cwiseProduct(d).squaredNorm();
   next_.x.resize(at_.x.size());
-  next_.x.back() = boxplus(at_.x.back(), NodeVector(d.head<kNodeSize>()));
+  next_.x.back() = boxplus(at_.x.back(), NodeVector(node_part(d)));
   next_.slow = at_.slow + d.tail(slow);
   go_back([&](std::size_t k, const Pivot& pivot) {
     const NodeVector own = pivot.eliminated(d);
     next_.x[k] = boxplus(at_.x[k], own);
     twice += pivot.a.squaredNorm() + pivot.damping.cwiseProduct(own).squaredNorm();
-    d.head<kNodeSize>() = own;
+    node_part(d) = own;
   });
   return 0.5 * twice;
 }

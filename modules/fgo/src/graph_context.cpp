@@ -9,8 +9,7 @@ Layout as_constants(const Layout& layout) {
 }
 
 std::optional<ImuScale> scale_of(const Layout& layout, const SlowVector& slow) {
-  if (!layout.slow_index(block::gyro_scale) && !layout.slow_index(block::accel_scale))
-    return std::nullopt;
+  if (!layout.find(block::gyro_scale) && !layout.find(block::accel_scale)) return std::nullopt;
   return layout.imu_scale(slow);
 }
 

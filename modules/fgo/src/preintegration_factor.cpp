@@ -59,7 +59,7 @@ PreintegrationFactor::PreintegrationFactor(const Preintegration& pre, const Eart
     copy_scaled(pre, *scaled_);
   }
   pack_lower(inverse_cholesky(pre.covariance), sqrt_information_.data());
-  set_num_residuals(kNodeSize);
+  set_num_residuals(NodeVector::RowsAtCompileTime);
   *mutable_parameter_block_sizes() = block_sizes(2, layout.slow_size());
 }
 

@@ -206,12 +206,12 @@ void WindowNavigator::add_observations(Node& node) const {
 void WindowNavigator::carry_back(std::size_t from) {
   const StageTimer timer(Stage::solve);
   if (from < 2) return;
-  StateVector d(kNodeSize + slow_.size());
-  d.head<kNodeSize>() = boxminus(nodes_[from - 1].x, nodes_[from - 1].past.at);
+  StateVector d(state_size(slow_.size()));
+  node_part(d) = boxminus(nodes_[from - 1].x, nodes_[from - 1].past.at);
   for (std::size_t k = from - 1; k-- > 0;) {
     d.tail(slow_.size()) = slow_ - nodes_[k + 1].past.slow;
-    d.head<kNodeSize>() = intervals_[k].elimination.eliminated(d);
-    nodes_[k].x = boxplus(nodes_[k].past.at, NodeVector(d.head<kNodeSize>()));
+    node_part(d) = intervals_[k].elimination.eliminated(d);
+    nodes_[k].x = boxplus(nodes_[k].past.at, NodeVector(node_part(d)));
   }
 }
 
@@ -245,7 +245,7 @@ bool WindowNavigator::has_bent(const ObservationFactor& observation, const Node&
   const ObservationRows before = observation.linearize(node.past.at, node.past.slow);
   const ObservationRows now = observation.linearize(node.x, slow_);
   if (loss_) return (now.r - before.r).norm() > kSettledResidual;
-  StateVector d(kNodeSize + slow_.size());
+  StateVector d(state_size(slow_.size()));
   d << boxminus(node.x, node.past.at), slow_ - node.past.slow;
   return (now.r - before.r - before.J * d).norm() > kSettledResidual;
 }

@@ -31,10 +31,8 @@ double prior_sigma(double turn_on_sigma, double bias_sigma) {
   return std::hypot(turn_on_sigma, bias_sigma);
 }
 
-using Row = Eigen::Matrix<double, 1, kNodeSize>;
-
-void update(Epoch& epoch, const Row& H, double innovation, double variance) {
-  Linearized z(1, kNodeSize);
+void update(Epoch& epoch, const NodeRow& H, double innovation, double variance) {
+  Linearized z(1, static_cast<int>(H.size()));
   z.r[0] = innovation;
   z.H = H;
   z.R(0, 0) = variance;
@@ -48,7 +46,7 @@ void fuse_gyro_prior(Epoch& epoch, double sigma) {
   const Matrix3d sum = epoch.covariance_of(gyro_bias) + prior;
   if (epoch.bias.gyro.dot(sum.ldlt().solve(epoch.bias.gyro)) > kContradiction) return;
   for (int axis = 0; axis < 3; ++axis) {
-    Row H = Row::Zero();
+    NodeRow H = NodeRow::Zero();
     part(H, gyro_bias)[axis] = 1;
     update(epoch, H, -epoch.bias.gyro[axis], sigma * sigma);
   }
@@ -60,7 +58,7 @@ void fuse_force_length(Epoch& epoch, const AlignmentFindings& findings) {
   const Vector3d expected_n = specific_force_n(findings);
   const Vector3d along_n = expected_n.normalized();
   const double excess = findings.specific_force_b.norm() - expected_n.norm();
-  Row H = Row::Zero();
+  NodeRow H = NodeRow::Zero();
   part(H, accel_bias) = along_b;
   const double variance = along_b.dot(findings.specific_force_covariance * along_b) +
                           along_n.dot(findings.motion_covariance.block<3, 3>(3, 3) * along_n) +
@@ -79,7 +77,7 @@ double accel_prior_sigma(const AlignmentFindings& findings, const ImuNoise& nois
 
 /// Independent errors in, state errors out: P = J S J^T, block by block.
 NodeMatrix covariance_of(const AlignmentFindings& findings, const Quaterniond& q_n_b,
-                        double accel_bias_sigma) {
+                         double accel_bias_sigma) {
   constexpr int kFix = 0, kMotion = 3, kForce = 9, kBias = 12, kHeading = 15, kGyro = 16;
   constexpr int kSources = 19;
   using Jacobian = Eigen::Matrix<double, 3, kSources>;
@@ -117,8 +115,7 @@ NodeMatrix covariance_of(const AlignmentFindings& findings, const Quaterniond& q
   Jacobian by_velocity = R * so3::skew(findings.omega_b.cross(lever)) * by_attitude;
   by_velocity.block<3, 3>(0, kMotion) += Matrix3d::Identity();
 
-  Eigen::Matrix<double, kNodeSize, kSources> J =
-      Eigen::Matrix<double, kNodeSize, kSources>::Zero();
+  NodeBy<kSources> J = NodeBy<kSources>::Zero();
   rows_of(J, position) = by_position;
   rows_of(J, velocity) = by_velocity;
   rows_of(J, attitude) = by_attitude;

@@ -5,24 +5,15 @@
 namespace foucault {
 namespace {
 
-constexpr int kFirst = block::gyro_bias.offset;
-
-StateVector of_sensors(const NavState& x) {
-  StateVector values(kNodeSize - kFirst + x.slow.size());
-  values << x.bias.gyro, x.bias.accel, x.slow;
-  return values;
-}
-
 /// The slow blocks as they were, so uncertain that the update decides about them.
 Epoch with_slow_blocks_of(const Epoch& earlier, const Epoch& aligned) {
   constexpr double kVague = 1e4;
-  const Eigen::Index slow = earlier.slow.size();
+  const Eigen::Index size = state_size(earlier.slow.size());
   Epoch out = aligned;
   out.slow = earlier.slow;
-  out.covariance = StateMatrix::Zero(kNodeSize + slow, kNodeSize + slow);
+  out.covariance = StateMatrix::Zero(size, size);
   node_part(out.covariance) = node_part(aligned.covariance);
-  out.covariance.bottomRightCorner(slow, slow) =
-      kVague * earlier.covariance.bottomRightCorner(slow, slow);
+  slow_part(out.covariance) = kVague * slow_part(earlier.covariance);
   return out;
 }
 
@@ -31,9 +22,10 @@ Epoch with_slow_blocks_of(const Epoch& earlier, const Epoch& aligned) {
 Epoch with_known_biases(const Epoch& aligned, const Epoch& earlier) {
   constexpr double kVarianceGrows = 4;
   Epoch out = with_slow_blocks_of(earlier, aligned);
-  const int known = static_cast<int>(out.covariance.rows()) - kFirst;
-  LinearizedRows<kMostSize> z(known, static_cast<int>(out.covariance.cols()));
-  z.r = of_sensors(earlier) - of_sensors(out);
+  const StateVector gone = boxminus(earlier, out);
+  const int known = static_cast<int>(sensor_part(gone).size());
+  LinearizedState z(known, static_cast<int>(gone.size()));
+  z.r = sensor_part(gone);
   z.H.rightCols(known).setIdentity();
   z.R = kVarianceGrows * earlier.covariance.bottomRightCorner(known, known);
   kalman_update(z, out, out.covariance);

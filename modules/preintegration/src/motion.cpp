@@ -216,7 +216,7 @@ NodeMatrix node_covariance(const ErrorTransition& t, const NodeMatrix& P, const 
 }
 
 void check_scale(const Preintegration& pre, const Layout& layout) {
-  if (pre.scale || !(layout.slow_index(gyro_scale) || layout.slow_index(accel_scale))) return;
+  if (pre.scale || !(layout.find(gyro_scale) || layout.find(accel_scale))) return;
   throw std::invalid_argument("preintegration from " + std::to_string(pre.t_begin_ns) +
                               " ns has no scale factors, but they are estimated");
 }
@@ -259,9 +259,11 @@ NodeVector motion_residual_value(const NodeState& x0, const NodeState& x1,
 }
 
 NodeBySlow slow_jacobian(const MotionResidual& m, const Layout& layout) {
-  NodeBySlow J = NodeBySlow::Zero(kNodeSize, layout.slow_size());
-  if (const auto index = layout.slow_index(gyro_scale)) J.middleCols<3>(*index) = m.J_gyro_scale;
-  if (const auto index = layout.slow_index(accel_scale)) J.middleCols<3>(*index) = m.J_accel_scale;
+  NodeBySlow J = NodeBySlow::Zero(m.r.size(), layout.slow_size());
+  if (const SlowBlock* gyro = layout.find(gyro_scale))
+    J.middleCols<3>(gyro->index) = m.J_gyro_scale;
+  if (const SlowBlock* accel = layout.find(accel_scale))
+    J.middleCols<3>(accel->index) = m.J_accel_scale;
   return J;
 }
 
@@ -287,7 +289,7 @@ NodeState predict(const NodeState& x0, const Preintegration& pre, const EarthMod
 NodeMatrix predict_covariance(const NodeState& x0, const NodeState& x1, const Preintegration& pre,
                               const EarthModel& earth, const NodeMatrix& covariance_x0) {
   const MotionResidual m = motion_residual(x0, x1, pre, earth, pre.scale.value_or(ImuScale{}));
-  return node_covariance(error_transition(m, NodeBySlow(kNodeSize, 0)), covariance_x0,
+  return node_covariance(error_transition(m, NodeBySlow(m.r.size(), 0)), covariance_x0,
                          pre.covariance);
 }
 
@@ -295,22 +297,21 @@ StateMatrix predict_covariance(const NodeState& x0, const NodeState& x1, const P
                                const EarthModel& earth, const StateMatrix& covariance_x0,
                                const Layout& layout, const SlowVector& slow) {
   check_scale(pre, layout);
-  const int n = layout.slow_size();
   const MotionResidual m = motion_residual(x0, x1, pre, earth, layout.imu_scale(slow));
   const ErrorTransition t = error_transition(m, slow_jacobian(m, layout));
   StateMatrix P(layout.size(), layout.size());
   node_part(P) = node_covariance(t, node_part(covariance_x0), pre.covariance);
-  if (n == 0) return P;
+  if (layout.slow_size() == 0) return P;
 
-  const NodeBySlow by_slow = covariance_x0.topRightCorner(kNodeSize, n);
-  const SlowMatrix slow_slow = covariance_x0.bottomRightCorner(n, n);
+  const NodeBySlow by_slow = node_by_slow(covariance_x0);
+  const SlowMatrix slow_slow = slow_part(covariance_x0);
   const NodeMatrix crossed = t.F * by_slow * t.S.transpose();
   node_part(P) += crossed + crossed.transpose() + t.S * slow_slow * t.S.transpose();
   const SlowVector left = decay(layout, pre.dt);
-  P.topRightCorner(kNodeSize, n) = -(t.F * by_slow + t.S * slow_slow) * left.asDiagonal();
-  P.bottomLeftCorner(n, kNodeSize) = P.topRightCorner(kNodeSize, n).transpose();
-  P.bottomRightCorner(n, n) = left.asDiagonal() * slow_slow * left.asDiagonal();
-  P.bottomRightCorner(n, n).diagonal() += driving_variance(layout, pre.dt);
+  node_by_slow(P) = -(t.F * by_slow + t.S * slow_slow) * left.asDiagonal();
+  slow_by_node(P) = node_by_slow(P).transpose();
+  slow_part(P) = left.asDiagonal() * slow_slow * left.asDiagonal();
+  slow_part(P).diagonal() += driving_variance(layout, pre.dt);
   return 0.5 * (P + P.transpose());
 }
 

@@ -3,14 +3,35 @@
 #include <cmath>
 
 namespace foucault {
+namespace {
+
+/// Of each row, what its sigma is to be multiplied by.
+StateVector shrinkage(const StateMatrix& covariance, const Layout& layout) {
+  StateVector factors = StateVector::Ones(layout.size());
+  for (const SlowBlock& slow : layout.slow()) {
+    const StateVector sigmas = part(covariance.diagonal(), slow).cwiseMax(0).cwiseSqrt();
+    part(factors, slow) = (sigmas.array() > slow.sigma).select(slow.sigma / sigmas.array(), 1);
+  }
+  return factors;
+}
+
+Epoch within_prior(const Epoch& epoch, const Layout& layout) {
+  const StateVector factors = shrinkage(epoch.covariance, layout);
+  if (factors.minCoeff() == 1) return epoch;
+  Epoch out = epoch;
+  out.covariance = factors.asDiagonal() * epoch.covariance * factors.asDiagonal();
+  return out;
+}
+
+}  // namespace
 
 Epoch with_slow_blocks(const Epoch& epoch, const Layout& layout) {
-  if (epoch.covariance.rows() == layout.size()) return epoch;
+  if (epoch.covariance.rows() == layout.size()) return within_prior(epoch, layout);
   Epoch out = epoch;
   out.slow = SlowVector::Zero(layout.slow_size());
   out.covariance = StateMatrix::Zero(layout.size(), layout.size());
   node_part(out.covariance) = node_part(epoch.covariance);
-  out.covariance.bottomRightCorner(layout.slow_size(), layout.slow_size()) = layout.prior();
+  slow_part(out.covariance) = layout.prior();
   return out;
 }
 

@@ -15,11 +15,9 @@ Innovation innovation_of(const Linearized& z, const StateMatrix& covariance) {
 
 template <int kMostRows>
 void kalman_update(const LinearizedRows<kMostRows>& z, NavState& x, StateMatrix& P) {
-  using Gain = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMostSize,
-                             kMostRows>;
-  const Gain PHt = P * z.H.transpose();
+  const StateByColumns<kMostRows> PHt = P * z.H.transpose();
   const auto S = (z.H * PHt + z.R).eval();
-  const Gain K = S.llt().solve(PHt.transpose()).transpose();
+  const StateByColumns<kMostRows> K = S.llt().solve(PHt.transpose()).transpose();
   StateMatrix left = StateMatrix::Identity(P.rows(), P.cols());
   left.noalias() -= K * z.H;
   P = left * P * left.transpose() + K * z.R * K.transpose();
@@ -32,7 +30,7 @@ void kalman_update(const LinearizedRows<kMostRows>& z, NavState& x, StateMatrix&
   x = boxplus(x, error);
 }
 
-template void kalman_update(const LinearizedRows<kMostMeasured>&, NavState&, StateMatrix&);
-template void kalman_update(const LinearizedRows<kMostSize>&, NavState&, StateMatrix&);
+template void kalman_update(const Linearized&, NavState&, StateMatrix&);
+template void kalman_update(const LinearizedState&, NavState&, StateMatrix&);
 
 }  // namespace foucault

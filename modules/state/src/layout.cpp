@@ -6,7 +6,7 @@
 namespace foucault {
 
 Layout& Layout::add(const Block& block, double sigma, double tau) {
-  if (slow_index(block))
+  if (find(block))
     throw std::invalid_argument("block " + std::string(block.name) + " is there already");
   if (slow_size_ + block.size > kMostSlow)
     throw std::invalid_argument("no room for block " + std::string(block.name));
@@ -15,17 +15,23 @@ Layout& Layout::add(const Block& block, double sigma, double tau) {
   return *this;
 }
 
-std::optional<int> Layout::slow_index(const Block& block) const {
+const SlowBlock* Layout::find(const Block& block) const {
   for (const SlowBlock& slow : slow_) {
-    if (slow.block.name == block.name) return slow.index;
+    if (slow.block.name == block.name) return &slow;
   }
-  return std::nullopt;
+  return nullptr;
+}
+
+std::optional<int> Layout::slow_index(const Block& block) const {
+  const SlowBlock* found = find(block);
+  return found ? std::optional<int>(found->index) : std::nullopt;
 }
 
 ImuScale Layout::imu_scale(const SlowVector& slow) const {
   ImuScale scale;
-  if (const auto index = slow_index(block::gyro_scale)) scale.gyro = slow.segment<3>(*index);
-  if (const auto index = slow_index(block::accel_scale)) scale.accel = slow.segment<3>(*index);
+  if (const SlowBlock* gyro = find(block::gyro_scale)) scale.gyro = slow.segment<3>(gyro->index);
+  if (const SlowBlock* accel = find(block::accel_scale))
+    scale.accel = slow.segment<3>(accel->index);
   return scale;
 }
 

@@ -29,17 +29,16 @@ NavState boxplus(const NavState& x, const StateVector& error) {
   y.position = displaced(x.position, part(error, block::position), Place(x.position));
   y.velocity_n += part(error, block::velocity);
   correct(error, y.q_n_b, y.bias);
-  const Eigen::Index slow = error.size() - kNodeSize;
-  if (slow > 0) y.slow += error.tail(slow);
+  if (slow_part(error).size() > 0) y.slow += slow_part(error);
   return y;
 }
 
 StateVector boxminus(const NavState& y, const NavState& x) {
-  StateVector error(kNodeSize + x.slow.size());
+  StateVector error(state_size(x.slow.size()));
   part(error, block::position) = displacement_n(x.position, y.position, Place(x.position));
   part(error, block::velocity) = y.velocity_n - x.velocity_n;
   difference(y.q_n_b, y.bias, x.q_n_b, x.bias, error);
-  error.tail(x.slow.size()) = y.slow - x.slow;
+  slow_part(error) = y.slow - x.slow;
   return error;
 }
 

@@ -35,11 +35,8 @@ struct MotionIntegrals {
 
 /// A transition of errors. The rows of position, velocity and attitude are full; those of what
 /// drives them below hold nothing but its decay on the diagonal.
-constexpr int kMotion = block::gyro_bias.offset;
-using MotionRows =
-    Eigen::Matrix<double, kMotion, Eigen::Dynamic, Eigen::ColMajor, kMotion, kMostSize>;
 struct Phi {
-  MotionRows motion;
+  MotionByState motion;
   StateVector decay;
 
   StateMatrix full() const;

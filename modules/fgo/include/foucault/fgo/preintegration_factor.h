@@ -70,7 +70,8 @@ class PreintegrationFactor final : public ceres::CostFunction {
   std::unique_ptr<ScaledMotion> scaled_;  ///< if it was integrated at scale factors
   EarthModel earth_;
   /// Inverse Cholesky factor of the covariance, its lower triangle.
-  std::array<double, kNodeSize*(kNodeSize + 1) / 2> sqrt_information_;
+  static constexpr int kRows = NodeVector::RowsAtCompileTime;
+  std::array<double, kRows*(kRows + 1) / 2> sqrt_information_;
   Layout layout_;
 };
 

@@ -12,8 +12,8 @@ namespace foucault {
 struct SquareRootPrior {
   NodeState at;
   SlowVector slow_at;
-  StateMatrix S = StateMatrix::Identity(kNodeSize, kNodeSize);
-  StateVector r = StateVector::Zero(kNodeSize);
+  StateMatrix S = NodeMatrix::Identity();
+  StateVector r = NodeVector::Zero();
 };
 
 /// Throws std::invalid_argument if the covariance is not positive definite.

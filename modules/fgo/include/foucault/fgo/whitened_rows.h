@@ -9,9 +9,9 @@ namespace foucault {
 template <int kMostRows>
 struct WhitenedRows {
   Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMostRows, 1> r;
-  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMostRows, kMostSize> J;
+  RowsByState<kMostRows> J;
 };
 using ObservationRows = WhitenedRows<kMostMeasured>;
-using StateRows = WhitenedRows<kMostSize>;
+using StateRows = WhitenedRows<StateVector::MaxRowsAtCompileTime>;
 
 }  // namespace foucault

@@ -5,9 +5,9 @@
 
 namespace foucault {
 
-/// Velocity of the antenna, v + C (omega x l), omega = rate_b less the gyro bias.
-/// d(v_a) = dv - C [(omega x l) x] d + C [l x] dbg. The rotation of n and of the Earth, 0.1 mm/s at
-/// a metre of lever arm, is left out.
+/// Velocity of the antenna, v + C (omega x l), omega = (rate_b - bias) / (1 + scale) by axis.
+/// d(v_a) = dv - C [(omega x l) x] d + C [l x] (dbg + omega dscale) / (1 + scale). The rotation of
+/// n and of the Earth, 0.1 mm/s at a metre of lever arm, is left out.
 class GnssVelocity final : public Observation {
  public:
   /// Precondition: the fix has a velocity.

@@ -11,7 +11,7 @@
 namespace foucault {
 
 /// Rows of a node by the axes of the IMU.
-using NodeByAxis = Eigen::Matrix<double, kNodeSize, 3>;
+using NodeByAxis = NodeBy<3>;
 
 /// Residual (49) of an interval from x0 to x1 and its Jacobians by the tangents of both, and by the
 /// scale factors.

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <string_view>
+#include <type_traits>
 
 /// The list of all that can be estimated, the one home of sizes and offsets. Every state holds
 /// position, velocity, attitude and the biases of the IMU, the blocks of a node; behind them come
@@ -21,9 +22,13 @@ struct NodeBlock : Block {
   int offset = 0;
 };
 
+constexpr int kMotionSize = 9;  ///< rows of position, velocity and attitude
 constexpr int kNodeSize = 15;
 constexpr int kMostSlow = 17;                     ///< rows of slow blocks
 constexpr int kMostSize = kNodeSize + kMostSlow;  ///< rows of a state
+
+/// Rows of a state with so many rows of slow blocks.
+constexpr Eigen::Index state_size(Eigen::Index slow_size) { return kNodeSize + slow_size; }
 
 /// Errors are true minus estimated; the attitude's is a right perturbation, q = q_hat * exp(d).
 namespace block {
@@ -40,19 +45,31 @@ inline constexpr Block accel_scale{"accel_scale", 3, "1"};
 
 using NodeVector = Eigen::Matrix<double, kNodeSize, 1>;
 using NodeMatrix = Eigen::Matrix<double, kNodeSize, kNodeSize>;
+using NodeRow = Eigen::Matrix<double, 1, kNodeSize>;
+template <int kColumns>
+using NodeBy = Eigen::Matrix<double, kNodeSize, kColumns>;
 
 /// Of the slow blocks, on the stack.
 using SlowVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMostSlow, 1>;
-using SlowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMostSlow,
-                                 kMostSlow>;
+using SlowMatrix =
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMostSlow, kMostSlow>;
 /// Rows of a node by columns of the slow blocks.
-using NodeBySlow = Eigen::Matrix<double, kNodeSize, Eigen::Dynamic, Eigen::ColMajor, kNodeSize,
-                                 kMostSlow>;
+using NodeBySlow =
+    Eigen::Matrix<double, kNodeSize, Eigen::Dynamic, Eigen::ColMajor, kNodeSize, kMostSlow>;
 
 /// Of a whole state, on the stack.
 using StateVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMostSize, 1>;
-using StateMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMostSize,
-                                  kMostSize>;
+using StateMatrix =
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMostSize, kMostSize>;
+template <int kMostRows>
+using RowsByState =
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMostRows, kMostSize>;
+template <int kMostColumns>
+using StateByColumns =
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMostSize, kMostColumns>;
+/// The rows of the motion.
+using MotionByState =
+    Eigen::Matrix<double, kMotionSize, Eigen::Dynamic, Eigen::ColMajor, kMotionSize, kMostSize>;
 
 /// The part of a vector, or of a matrix, that belongs to blocks of a node.
 template <class Vector>
@@ -71,9 +88,35 @@ template <class Matrix>
 auto columns_of(Matrix&& m, const NodeBlock& block) {
   return m.template middleCols<3>(block.offset);
 }
+
+/// Of a vector or a square matrix of a whole state: what belongs to the node, what to the slow
+/// blocks, and the two rectangles between them.
 template <class Matrix>
 auto node_part(Matrix&& m) {
-  return m.template topLeftCorner<kNodeSize, kNodeSize>();
+  if constexpr (std::decay_t<Matrix>::IsVectorAtCompileTime)
+    return m.template head<kNodeSize>();
+  else
+    return m.template topLeftCorner<kNodeSize, kNodeSize>();
+}
+template <class Matrix>
+auto slow_part(Matrix&& m) {
+  if constexpr (std::decay_t<Matrix>::IsVectorAtCompileTime)
+    return m.tail(m.size() - kNodeSize);
+  else
+    return m.bottomRightCorner(m.rows() - kNodeSize, m.cols() - kNodeSize);
+}
+template <class Matrix>
+auto node_by_slow(Matrix&& m) {
+  return m.topRightCorner(kNodeSize, m.cols() - kNodeSize);
+}
+template <class Matrix>
+auto slow_by_node(Matrix&& m) {
+  return m.bottomLeftCorner(m.rows() - kNodeSize, kNodeSize);
+}
+/// What of a vector is not motion: biases and slow blocks.
+template <class Vector>
+auto sensor_part(Vector&& v) {
+  return v.tail(v.size() - kMotionSize);
 }
 
 /// Biases of an IMU; subtracted from its measurements.

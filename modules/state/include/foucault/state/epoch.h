@@ -10,7 +10,7 @@ namespace foucault {
 /// An estimate: a state and the covariance of its error. Of what has no slow blocks the covariance
 /// is that of a node.
 struct Epoch : NavState {
-  StateMatrix covariance = StateMatrix::Zero(kNodeSize, kNodeSize);
+  StateMatrix covariance = NodeMatrix::Zero();
 
   Eigen::Matrix3d covariance_of(const NodeBlock& block) const {
     return part(covariance, block, block);
@@ -20,7 +20,8 @@ struct Epoch : NavState {
   }
 };
 
-/// The same with the slow blocks of a layout; those that it lacks are zero within their prior.
+/// The same with the slow blocks of a layout; those that it lacks are zero within their prior. None
+/// is less certain than its prior, whatever was made of it over restarts; correlations stay.
 Epoch with_slow_blocks(const Epoch& epoch, const Layout& layout);
 
 /// A symmetric matrix that is kept for long: half of it.

@@ -10,7 +10,7 @@ namespace foucault {
 template <int kMostRows>
 struct LinearizedRows {
   Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMostRows, 1> r;
-  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMostRows, kMostSize> H;
+  RowsByState<kMostRows> H;
   Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMostRows, kMostRows> R;
 
   LinearizedRows() = default;
@@ -20,6 +20,7 @@ struct LinearizedRows {
 
 constexpr int kMostMeasured = 6;  ///< rows of one measurement
 using Linearized = LinearizedRows<kMostMeasured>;
+using LinearizedState = LinearizedRows<StateVector::MaxRowsAtCompileTime>;  ///< of all its rows
 
 /// Prediction error of a measurement before it is used, and its covariance.
 struct Innovation {

@@ -16,6 +16,21 @@ struct SlowBlock {
   int index = 0;     ///< first row among those of the slow blocks
 };
 
+/// Its part of a vector, or of a matrix, of a whole state.
+template <class Vector>
+auto part(Vector&& v, const SlowBlock& slow) {
+  return v.segment(state_size(slow.index), slow.block.size);
+}
+template <class Matrix>
+auto part(Matrix&& m, const SlowBlock& row, const SlowBlock& column) {
+  return m.block(state_size(row.index), state_size(column.index), row.block.size,
+                 column.block.size);
+}
+template <class Matrix>
+auto columns_of(Matrix&& m, const SlowBlock& slow) {
+  return m.middleCols(state_size(slow.index), slow.block.size);
+}
+
 /// Which blocks are estimated, and where each stands.
 class Layout {
  public:
@@ -25,7 +40,10 @@ class Layout {
 
   const std::vector<SlowBlock>& slow() const { return slow_; }
   int slow_size() const { return slow_size_; }
-  int size() const { return kNodeSize + slow_size_; }
+  int size() const { return static_cast<int>(state_size(slow_size_)); }
+
+  /// The block as it is estimated; null if it is not. Good until the next add().
+  const SlowBlock* find(const Block& block) const;
 
   /// The first row of a slow block among the slow ones; none if it is not estimated.
   std::optional<int> slow_index(const Block& block) const;

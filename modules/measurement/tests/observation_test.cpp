@@ -1,0 +1,402 @@
+#include "foucault/measurement/observation.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <functional>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "foucault/core/so3.h"
+#include "foucault/geodesy/place.h"
+#include "foucault/geodesy/wgs84.h"
+#include "foucault/measurement/gnss_position.h"
+#include "foucault/measurement/gnss_velocity.h"
+#include "foucault/simulation/scenario.h"
+
+namespace foucault {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+constexpr double kEarthRadius = 6.3e6;  ///< [m], less than any
+constexpr double kMostLever = 2;        ///< [m]
+constexpr double kMostRate = 3;         ///< [rad/s]
+
+double between(std::mt19937& rng, double low, double high) {
+  return std::uniform_real_distribution<double>(low, high)(rng);
+}
+
+Eigen::Vector3d draw3(std::mt19937& rng) {
+  return Eigen::Vector3d::NullaryExpr([&] { return between(rng, -1, 1); });
+}
+
+Eigen::Matrix3d random_covariance(std::mt19937& rng) {
+  Eigen::Matrix3d root;
+  for (int i = 0; i < 3; ++i) root.col(i) = draw3(rng);
+  const Eigen::Matrix3d m = root * root.transpose() + 0.1 * Eigen::Matrix3d::Identity();
+  return 0.5 * (m + m.transpose());
+}
+
+/// Seen by no observation but the beacon's.
+constexpr Block kTemperature{"temperature", 1, "K"};
+
+/// A distance from the antenna to a beacon, off by metres per kelvin of a block that no program
+/// has: range = |p_beacon - p - C l| + k T.
+class BeaconRange final : public Observation {
+ public:
+  static constexpr double kMetresPerKelvin = 0.3;
+
+  BeaconRange(const Geodetic& beacon, const Eigen::Vector3d& p_b_a, double range)
+      : beacon_e_(wgs84::geodetic_to_ecef(beacon)), p_b_a_(p_b_a), range_(range) {}
+
+  std::string_view name() const override { return "beacon_range"; }
+
+  Linearized linearize(const NavState& x, const Eigen::Vector3d& /*rate_b*/,
+                       const Layout& layout) const override {
+    const Eigen::Matrix3d R_e_n = wgs84::R_e_n(x.position.latitude, x.position.longitude);
+    const Eigen::Matrix3d C = x.q_n_b.toRotationMatrix();
+    const Eigen::Vector3d to_beacon_n =
+        R_e_n.transpose() * (beacon_e_ - wgs84::geodetic_to_ecef(x.position)) - C * p_b_a_;
+    const Eigen::RowVector3d away = -to_beacon_n.normalized();
+    Linearized z(1, layout.size());
+    z.r[0] = range_ - to_beacon_n.norm();
+    columns_of(z.H, block::position) = away;
+    columns_of(z.H, block::attitude) = -away * C * so3::skew(p_b_a_);
+    z.R(0, 0) = 0.01;
+    if (const SlowBlock* temperature = layout.find(kTemperature)) {
+      z.r[0] -= kMetresPerKelvin * x.slow[temperature->index];
+      columns_of(z.H, *temperature).setConstant(kMetresPerKelvin);
+    }
+    return z;
+  }
+
+ private:
+  Eigen::Vector3d beacon_e_;
+  Eigen::Vector3d p_b_a_;
+  double range_;
+};
+
+/// A fix some decimetres and decimetres per second off, of any lever arm.
+GnssFix random_fix(const NavState& x, std::mt19937& rng) {
+  GnssFix fix;
+  fix.p_b_a = between(rng, 0, kMostLever) * draw3(rng).normalized();
+  fix.antenna = displaced(x.position, x.q_n_b * fix.p_b_a + 0.3 * draw3(rng), Place(x.position));
+  fix.velocity_n = x.velocity_n + draw3(rng);
+  fix.position_covariance = random_covariance(rng);
+  fix.velocity_covariance = random_covariance(rng);
+  return fix;
+}
+
+ObservationPtr random_beacon(const NavState& x, std::mt19937& rng) {
+  const Eigen::Vector3d way_n = between(rng, 50, 500) * draw3(rng).normalized();
+  const Geodetic beacon = displaced(x.position, way_n, Place(x.position));
+  return std::make_shared<BeaconRange>(beacon, kMostLever * draw3(rng).normalized(),
+                                       between(rng, 50, 500));
+}
+
+/// All there is. A new observation is one line here; EveryObservationHasALine asks for it.
+struct Kind {
+  std::string name;
+  std::function<ObservationPtr(const NavState&, std::mt19937&)> make;
+};
+const std::vector<Kind> kKinds = {
+    {"gnss_position", [](const auto& x, auto& rng) { return gnss_position(random_fix(x, rng)); }},
+    {"gnss_velocity", [](const auto& x, auto& rng) { return gnss_velocity(random_fix(x, rng)); }},
+    {"beacon_range", random_beacon},
+};
+
+/// Every slow block there is; a new one is one line here.
+Layout every_block() {
+  Layout layout;
+  layout.add(block::accel_scale, 1e-3).add(kTemperature, 5).add(block::gyro_scale, 1e-3);
+  return layout;
+}
+
+/// Latitudes to +-80 deg, velocities to 250 m/s, any attitude, scale factors of several per cent.
+NavState random_state(std::mt19937& rng, const Layout& layout) {
+  NavState x;
+  x.position = {between(rng, -80, 80) * kPi / 180, between(rng, -kPi, kPi),
+                between(rng, -100, 12e3)};
+  x.velocity_n = between(rng, 0, 250) * draw3(rng).normalized();
+  x.q_n_b = so3::exp(between(rng, 0, kPi) * draw3(rng).normalized());
+  x.bias = {0.1 * draw3(rng), 0.5 * draw3(rng)};
+  x.slow = 0.1 * SlowVector::NullaryExpr(layout.slow_size(), [&] { return between(rng, -1, 1); });
+  return x;
+}
+
+/// An observation at a state, and the rate there.
+struct Sample {
+  NavState x;
+  Eigen::Vector3d rate_b;
+  ObservationPtr observation;
+};
+
+Sample random_sample(const Kind& kind, const Layout& layout, std::mt19937& rng) {
+  Sample s;
+  s.x = random_state(rng, layout);
+  s.rate_b = kMostRate * draw3(rng);
+  s.observation = kind.make(s.x, rng);
+  return s;
+}
+
+/// d predicted / d error by central differences: r is minus the prediction.
+StateVector gradient_by_differences(const Sample& s, const Layout& layout, int row) {
+  StateVector gradient(layout.size());
+  for (int i = 0; i < layout.size(); ++i) {
+    const double h = i < block::position.size ? 0.1 : 1e-4;
+    const StateVector step = h * StateVector::Unit(layout.size(), i);
+    const auto r = [&](const StateVector& error) {
+      return s.observation->linearize(boxplus(s.x, error), s.rate_b, layout).r[row];
+    };
+    gradient[i] = (r(-step) - r(step)) / (2 * h);
+  }
+  return gradient;
+}
+
+/// What differences may be off by.
+/// Position, steps of 0.1 m: coordinates rounded by 3 nm each, over the step, 1e-7; third
+/// derivatives of a range of 50 m or more, 3 / 50^2, times h^2 / 6 are 2e-6; and the north and east
+/// that turn with the place, (1 + tan(latitude)) / R times the lever arm and the fix's error, which
+/// H leaves out.
+/// All others, steps h of 1e-4: third derivatives of what turns, at most 3 * the swing of 2 m at
+/// 3 * sqrt(3) + 0.2 rad/s, with scale factors of 10 %, times h^2 / 6, are 6e-8; rounding of 500 m
+/// or 250 m/s, 1e-13 over the step, is less.
+StateVector tolerance(const Sample& s, const Layout& layout) {
+  const double turning = (1 + std::tan(std::abs(s.x.position.latitude))) / kEarthRadius;
+  StateVector tolerance = StateVector::Constant(layout.size(), 1e-7);
+  part(tolerance, block::position).setConstant(3e-6 + (kMostLever + 1) * turning);
+  return tolerance;
+}
+
+/// Largest error of H by its tolerance.
+double worst_of(const Sample& s, const Layout& layout) {
+  const Linearized z = s.observation->linearize(s.x, s.rate_b, layout);
+  if (z.H.cols() != layout.size() || z.H.rows() != z.r.size()) return INFINITY;
+  double worst = 0;
+  for (int row = 0; row < z.r.size(); ++row) {
+    const StateVector error =
+        gradient_by_differences(s, layout, row) - StateVector(z.H.row(row).transpose());
+    worst = std::max(worst, error.cwiseAbs().cwiseQuotient(tolerance(s, layout)).maxCoeff());
+  }
+  return worst;
+}
+
+class Observations : public ::testing::TestWithParam<Kind> {};
+INSTANTIATE_TEST_SUITE_P(All, Observations, ::testing::ValuesIn(kKinds),
+                         [](const auto& kind) { return kind.param.name; });
+
+TEST_P(Observations, JacobianIsThatOfDifferences) {
+  std::mt19937 rng{42};
+  for (int i = 0; i < 100; ++i)
+    EXPECT_LE(worst_of(random_sample(GetParam(), every_block(), rng), every_block()), 1) << i;
+}
+
+/// Blocks elsewhere, or not at all.
+TEST_P(Observations, JacobianFollowsTheLayout) {
+  std::mt19937 rng{43};
+  std::vector<Layout> layouts(4);
+  layouts[1].add(block::gyro_scale, 1).add(kTemperature, 1);
+  layouts[2].add(kTemperature, 1);
+  layouts[3].add(Block{"unknown", 4, "1"}, 1).add(block::gyro_scale, 1).add(block::accel_scale, 1);
+  for (const Layout& layout : layouts) {
+    for (int i = 0; i < 20; ++i)
+      EXPECT_LE(worst_of(random_sample(GetParam(), layout, rng), layout), 1) << layout.size();
+  }
+}
+
+/// An estimate without slow blocks and one where they are zero predict the same.
+TEST_P(Observations, SlowBlocksThatAreZeroChangeNothing) {
+  std::mt19937 rng{44};
+  const Layout none;
+  for (int i = 0; i < 20; ++i) {
+    Sample s = random_sample(GetParam(), none, rng);
+    const Linearized alone = s.observation->linearize(s.x, s.rate_b, none);
+    s.x.slow = SlowVector::Zero(every_block().slow_size());
+    const Linearized with = s.observation->linearize(s.x, s.rate_b, every_block());
+    EXPECT_EQ(alone.r, with.r);
+    EXPECT_EQ(alone.H, with.H.leftCols(none.size()));
+    EXPECT_EQ(alone.R, with.R);
+  }
+}
+
+TEST_P(Observations, NoiseIsACovarianceOfEachRow) {
+  std::mt19937 rng{45};
+  const Sample s = random_sample(GetParam(), every_block(), rng);
+  const Linearized z = s.observation->linearize(s.x, s.rate_b, every_block());
+  EXPECT_LE(z.r.size(), kMostMeasured);
+  ASSERT_EQ(z.R.rows(), z.r.size());
+  ASSERT_EQ(z.R.cols(), z.r.size());
+  EXPECT_EQ(z.R, z.R.transpose());
+  EXPECT_EQ(Eigen::LLT<Eigen::MatrixXd>(z.R).info(), Eigen::Success);
+}
+
+TEST_P(Observations, HasItsName) {
+  std::mt19937 rng{46};
+  const Sample s = random_sample(GetParam(), every_block(), rng);
+  EXPECT_EQ(s.observation->name(), GetParam().name);
+}
+
+TEST(Observation, EveryObservationHasALine) {
+  int headers = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(FOUCAULT_MEASUREMENT_HEADERS)) {
+    const std::string name = entry.path().stem().string();
+    if (name == "observation") continue;
+    ++headers;
+    const bool there = std::any_of(kKinds.begin(), kKinds.end(),
+                                   [&](const Kind& kind) { return kind.name == name; });
+    EXPECT_TRUE(there) << name;
+  }
+  EXPECT_GE(headers, 2);
+}
+
+/// Negative control: a column left out, one of the wrong sign, one a thousandth too large.
+class Spoilt final : public Observation {
+ public:
+  Spoilt(ObservationPtr sound, int column, double factor)
+      : sound_(std::move(sound)), column_(column), factor_(factor) {}
+  std::string_view name() const override { return "spoilt"; }
+  Linearized linearize(const NavState& x, const Eigen::Vector3d& rate_b,
+                       const Layout& layout) const override {
+    Linearized z = sound_->linearize(x, rate_b, layout);
+    z.H.col(column_) *= factor_;
+    return z;
+  }
+
+ private:
+  ObservationPtr sound_;
+  int column_;
+  double factor_;
+};
+
+TEST_P(Observations, WrongColumnsAreSeen) {
+  std::mt19937 rng{47};
+  const Layout layout = every_block();
+  const Sample sound = random_sample(GetParam(), layout, rng);
+  const Linearized z = sound.observation->linearize(sound.x, sound.rate_b, layout);
+  int spoilt = 0;
+  for (int column = 0; column < layout.size(); ++column) {
+    if (z.H.col(column).cwiseAbs().maxCoeff() < 0.05) continue;
+    for (const double factor : {0.0, -1.0, 1.001}) {
+      Sample s = sound;
+      s.observation = std::make_shared<Spoilt>(sound.observation, column, factor);
+      EXPECT_GT(worst_of(s, layout), 2) << column << " * " << factor;
+      ++spoilt;
+    }
+  }
+  EXPECT_GE(spoilt, 9);
+}
+
+/// An antenna of a simulated vehicle, by another route: its place and velocity from its way in
+/// ECEF.
+class Antenna {
+ public:
+  Antenna() : trajectory_(make_trajectory(options())) {}
+
+  double duration() const { return trajectory_.duration(); }
+  Motion imu(double t) const { return trajectory_.at(t); }
+
+  Eigen::Vector3d p_e(double t) const {
+    const Motion m = imu(t);
+    return m.p_e + wgs84::R_e_n(m.position.latitude, m.position.longitude) * (m.q_n_v * p_b_a);
+  }
+
+  /// Velocity in the NED of the IMU, by differences: ECEF is rounded to 1e-9 m, over 1 ms.
+  Eigen::Vector3d velocity_n(double t) const {
+    const Motion m = imu(t);
+    const Eigen::Vector3d velocity_e = (p_e(t + 5e-4) - p_e(t - 5e-4)) / 1e-3;
+    return wgs84::R_e_n(m.position.latitude, m.position.longitude).transpose() * velocity_e;
+  }
+
+  const Eigen::Vector3d p_b_a{0.4, -0.7, -1.2};
+
+ private:
+  static ScenarioOptions options() {
+    ScenarioOptions o;
+    o.name = "city";
+    o.duration_s = 300;
+    o.seed = 5;
+    return o;
+  }
+
+  Trajectory trajectory_;
+};
+
+/// The state and the rate that sensors of these errors would show.
+struct AtAntenna {
+  NavState x;
+  Eigen::Vector3d rate_b;
+};
+
+AtAntenna at(const Motion& m, const Layout& layout) {
+  AtAntenna a;
+  a.x.position = m.position;
+  a.x.velocity_n = m.velocity_n;
+  a.x.q_n_b = m.q_n_v;
+  a.x.bias.gyro = Eigen::Vector3d(0.02, -0.01, 0.03);
+  a.x.slow = SlowVector::LinSpaced(layout.slow_size(), -0.03, 0.04);
+  const Eigen::Array3d scale = 1 + layout.imu_scale(a.x.slow).gyro.array();
+  a.rate_b = (scale * m.omega_iv_v.array()).matrix() + a.x.bias.gyro;
+  return a;
+}
+
+/// Largest residuals along the way, of position [m] and velocity [m/s].
+struct Residuals {
+  double position = 0, velocity = 0;
+};
+
+Residuals along_the_way(const Antenna& antenna, const Eigen::Vector3d& lever_arm) {
+  Residuals most;
+  const Layout layout = every_block();
+  for (double t = 1; t < antenna.duration() - 1; t += 0.5) {
+    const AtAntenna a = at(antenna.imu(t), layout);
+    GnssFix fix;
+    fix.p_b_a = lever_arm;
+    fix.antenna = wgs84::ecef_to_geodetic(antenna.p_e(t));
+    fix.velocity_n = antenna.velocity_n(t);
+    const auto residual = [&](const Observation& o) {
+      return o.linearize(a.x, a.rate_b, layout).r.cwiseAbs().maxCoeff();
+    };
+    most.position = std::max(most.position, residual(GnssPosition(fix)));
+    most.velocity = std::max(most.velocity, residual(GnssVelocity(fix)));
+  }
+  return most;
+}
+
+TEST(GnssObservations, OfATrueAntennaLeaveNoResidual) {
+  const Antenna antenna;
+  const Residuals most = along_the_way(antenna, antenna.p_b_a);
+  // Radii of the IMU's place instead of the chord to the antenna: l^2 / R, and nanometres.
+  EXPECT_LT(most.position, antenna.p_b_a.squaredNorm() / kEarthRadius + 2e-8);
+  // The Earth's rate, left out, and 4 um/s of the differences.
+  EXPECT_LT(most.velocity, 7.3e-5 * antenna.p_b_a.norm() + 1e-5);
+}
+
+/// By a degree about the vertical: 1.4 cm of 0.8 m, and 1.7 % of the swing at 0.4 rad/s.
+TEST(GnssObservations, OfATurnedLeverArmLeaveResiduals) {
+  const Antenna antenna;
+  const Eigen::Vector3d turned = so3::exp({0, 0, kPi / 180}) * antenna.p_b_a;
+  const Residuals most = along_the_way(antenna, turned);
+  EXPECT_GT(most.position, 0.01);
+  EXPECT_GT(most.velocity, 1e-3);
+}
+
+/// A scale of 3 % in a turn at 0.4 rad/s swings 1.2 m by 14 mm/s.
+TEST(GnssVelocity, SeesTheScaleOfTheGyroscopes) {
+  const Antenna antenna;
+  const Layout layout = every_block();
+  double most = 0;
+  for (double t = 1; t < antenna.duration() - 1; t += 0.5) {
+    AtAntenna a = at(antenna.imu(t), layout);
+    GnssFix fix;
+    fix.p_b_a = antenna.p_b_a;
+    fix.velocity_n = antenna.velocity_n(t);
+    a.x.slow.setZero();
+    most = std::max(most, GnssVelocity(fix).linearize(a.x, a.rate_b, layout).r.norm());
+  }
+  EXPECT_GT(most, 5e-3);
+}
+
+}  // namespace
+}  // namespace foucault
