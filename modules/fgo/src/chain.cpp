@@ -51,7 +51,10 @@ void put_on_top(const Jacobian& J, const Residual& r, NodeInformation& informati
   const Index size = information.r.size();
   Eigen::Matrix<double, Dynamic, Dynamic, Eigen::ColMajor, kMostDense + kMostSize, kMostSize + 1>
       rows(r.size() + size, size + 1);
-  rows << J, r, information.S, information.r;
+  rows.topLeftCorner(r.size(), size) = J;
+  rows.col(size).head(r.size()) = r;
+  rows.bottomLeftCorner(size, size) = information.S;
+  rows.col(size).tail(size) = information.r;
   reflect<kDense>(rows, r.size(), size);
   information.S = rows.topLeftCorner(size, size);
   information.r = rows.col(size).head(size);
@@ -77,11 +80,10 @@ void NodeInformation::add(const StateRows& rows) { put_on_top<Dynamic>(rows.J, r
 
 void NodeInformation::add(const ObservationRows& rows, double weight) {
   const double root = std::sqrt(weight);
-  const ObservationRows weighted{root * rows.r, root * rows.J};
   if (rows.r.size() == 3) {
-    put_on_top<3>(weighted.J, weighted.r, *this);
+    put_on_top<3>(root * rows.J, root * rows.r, *this);
   } else {
-    put_on_top<Dynamic>(weighted.J, weighted.r, *this);
+    put_on_top<Dynamic>(root * rows.J, root * rows.r, *this);
   }
 }
 
