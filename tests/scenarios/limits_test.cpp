@@ -221,7 +221,7 @@ TEST_P(ConstantBias, WindowAndFilterAgree) {
   const Outcome ekf = run_filter(drive);
   const Outcome full = run_window(drive, PreintegrationModel::full);
   EXPECT_LT(relative_deviation(full.back.covariance, ekf.back.covariance), 0.005);
-  EXPECT_LT((full.back.value_n - ekf.back.value_n).norm(), 0.005 * ekf.back.value_n.norm());
+  EXPECT_LT((full.back.value - ekf.back.value).norm(), 0.005 * ekf.back.value.norm());
   EXPECT_LT(relative_deviation(full.end.covariance, ekf.end.covariance), 0.005);
   EXPECT_LT(largest_horizontal_error(run_window(drive, PreintegrationModel::refined)), 4);
 }
@@ -244,7 +244,7 @@ TEST_P(ConstantBias, SmoothersAgree) {
 TEST(NoNoise, IsTakenByTheFilter) {
   const Drive drive{"city", ImuNoise{}, 60};
   const Outcome ekf = run_filter(drive);
-  EXPECT_LT(ekf.back.value_n.norm(), 0.1);
+  EXPECT_LT(ekf.back.value.norm(), 0.1);
   EXPECT_TRUE(ekf.end.covariance.allFinite());
   for (const SmoothedEpoch& node : rts(drive)) {
     EXPECT_TRUE(node.covariance.full().allFinite());

@@ -2,8 +2,6 @@
 
 #include <Eigen/LU>
 #include <cmath>
-#include <stdexcept>
-#include <string>
 
 #include "foucault/core/so3.h"
 
@@ -22,7 +20,7 @@ struct Corrected {
   Vector3d dq_shift;
 };
 
-Corrected correct(const Preintegration& pre, const ImuBias& bias, const ImuScale& scale) {
+Corrected correct(const MotionDeltas& pre, const ImuBias& bias, const ImuScale& scale) {
   const Vector3d dg = bias.gyro - pre.bias.gyro;
   const Vector3d da = bias.accel - pre.bias.accel;
   Vector3d dp = pre.dp + pre.by_gyro_bias.dp * dg + pre.by_accel_bias.dp * da;
@@ -39,7 +37,7 @@ Corrected correct(const Preintegration& pre, const ImuBias& bias, const ImuScale
 }
 
 /// A bias of b0 at the beginning decays towards the one at which the interval was integrated.
-ImuBias expected_bias(const ImuBias& b0, const Preintegration& pre) {
+ImuBias expected_bias(const ImuBias& b0, const MotionDeltas& pre) {
   ImuBias b1;
   b1.gyro = pre.bias.gyro + pre.gyro_bias_decay * (b0.gyro - pre.bias.gyro);
   b1.accel = pre.bias.accel + pre.accel_bias_decay * (b0.accel - pre.bias.accel);
@@ -90,7 +88,7 @@ struct Terms {
   NodeVector r;
 };
 
-Terms evaluate(const NodeState& x0, const NodeState& x1, const Preintegration& pre,
+Terms evaluate(const NodeState& x0, const NodeState& x1, const MotionDeltas& pre,
                const EarthModel& earth, const ImuScale& scale) {
   const Vector3d& w = earth.omega_ie_w;
   const Quaterniond earth_turn = so3::exp(w * pre.dt);
@@ -147,7 +145,7 @@ AttitudeJacobians attitude_jacobians(const Terms& t) {
                           so3::right_jacobian(t.z.dq_shift)};
 }
 
-NodeMatrix jacobian_x0(const Terms& t, const AttitudeJacobians& r_q, const Preintegration& pre,
+NodeMatrix jacobian_x0(const Terms& t, const AttitudeJacobians& r_q, const MotionDeltas& pre,
                        const EarthModel& earth) {
   const double T = pre.dt;
   const Matrix3d turn_W = t.turn * so3::skew(earth.omega_ie_w);
@@ -195,52 +193,9 @@ NodeByAxis jacobian_of(const DeltaJacobian& change, const AttitudeJacobians& r_q
   return J;
 }
 
-/// r(x0, x1, slow) = e to first order, solved for d1: -d1 = F d0 + S d_slow - B e.
-struct ErrorTransition {
-  NodeMatrix F;
-  NodeMatrix B;
-  NodeBySlow S;
-};
-
-ErrorTransition error_transition(const MotionResidual& m, const NodeBySlow& J_slow) {
-  const Eigen::PartialPivLU<NodeMatrix> J1(m.J_x1);  // block lower triangular, invertible blocks
-  ErrorTransition t{J1.solve(m.J_x0), J1.solve(NodeMatrix::Identity()), J_slow};
-  if (J_slow.cols() > 0) t.S = J1.solve(J_slow);
-  return t;
-}
-
-/// Without what the slow blocks add.
-NodeMatrix node_covariance(const ErrorTransition& t, const NodeMatrix& P, const NodeMatrix& noise) {
-  const NodeMatrix next = t.F * P * t.F.transpose() + t.B * noise * t.B.transpose();
-  return 0.5 * (next + next.transpose());
-}
-
-void check_scale(const Preintegration& pre, const Layout& layout) {
-  if (pre.scale || !(layout.find(gyro_scale) || layout.find(accel_scale))) return;
-  throw std::invalid_argument("preintegration from " + std::to_string(pre.t_begin_ns) +
-                              " ns has no scale factors, but they are estimated");
-}
-
-/// Share of each slow row's error that is left after T.
-SlowVector decay(const Layout& layout, double T) {
-  SlowVector left(layout.slow_size());
-  for (const SlowBlock& slow : layout.slow())
-    left.segment(slow.index, slow.block.size).setConstant(std::exp(-T / slow.tau));
-  return left;
-}
-
-/// Variance that the processes of the slow blocks gain over T.
-SlowVector driving_variance(const Layout& layout, double T) {
-  SlowVector variance(layout.slow_size());
-  for (const SlowBlock& slow : layout.slow())
-    variance.segment(slow.index, slow.block.size)
-        .setConstant(-std::expm1(-2 * T / slow.tau) * slow.sigma * slow.sigma);
-  return variance;
-}
-
 }  // namespace
 
-MotionResidual motion_residual(const NodeState& x0, const NodeState& x1, const Preintegration& pre,
+MotionResidual motion_residual(const NodeState& x0, const NodeState& x1, const MotionDeltas& pre,
                                const EarthModel& earth, const ImuScale& scale) {
   const Terms t = evaluate(x0, x1, pre, earth, scale);
   const AttitudeJacobians r_q = attitude_jacobians(t);
@@ -252,9 +207,8 @@ MotionResidual motion_residual(const NodeState& x0, const NodeState& x1, const P
   return m;
 }
 
-NodeVector motion_residual_value(const NodeState& x0, const NodeState& x1,
-                                 const Preintegration& pre, const EarthModel& earth,
-                                 const ImuScale& scale) {
+NodeVector motion_residual_value(const NodeState& x0, const NodeState& x1, const MotionDeltas& pre,
+                                 const EarthModel& earth, const ImuScale& scale) {
   return evaluate(x0, x1, pre, earth, scale).r;
 }
 
@@ -267,7 +221,7 @@ NodeBySlow slow_jacobian(const MotionResidual& m, const Layout& layout) {
   return J;
 }
 
-NodeState predict(const NodeState& x0, const Preintegration& pre, const EarthModel& earth,
+NodeState predict(const NodeState& x0, const MotionDeltas& pre, const EarthModel& earth,
                   const ImuScale& scale) {
   const Vector3d& w = earth.omega_ie_w;
   const Corrected z = correct(pre, x0.bias, scale);
@@ -286,32 +240,20 @@ NodeState predict(const NodeState& x0, const Preintegration& pre, const EarthMod
   return x1;
 }
 
-NodeMatrix predict_covariance(const NodeState& x0, const NodeState& x1, const Preintegration& pre,
-                              const EarthModel& earth, const NodeMatrix& covariance_x0) {
-  const MotionResidual m = motion_residual(x0, x1, pre, earth, pre.scale.value_or(ImuScale{}));
-  return node_covariance(error_transition(m, NodeBySlow(m.r.size(), 0)), covariance_x0,
-                         pre.covariance);
-}
-
+/// r(x0, x1, slow) = e to first order, solved for d1: d1 = T (d0, d_slow) + J1^-1 e.
 StateMatrix predict_covariance(const NodeState& x0, const NodeState& x1, const Preintegration& pre,
                                const EarthModel& earth, const StateMatrix& covariance_x0,
                                const Layout& layout, const SlowVector& slow) {
-  check_scale(pre, layout);
   const MotionResidual m = motion_residual(x0, x1, pre, earth, layout.imu_scale(slow));
-  const ErrorTransition t = error_transition(m, slow_jacobian(m, layout));
-  StateMatrix P(layout.size(), layout.size());
-  node_part(P) = node_covariance(t, node_part(covariance_x0), pre.covariance);
-  if (layout.slow_size() == 0) return P;
-
-  const NodeBySlow by_slow = node_by_slow(covariance_x0);
-  const SlowMatrix slow_slow = slow_part(covariance_x0);
-  const NodeMatrix crossed = t.F * by_slow * t.S.transpose();
-  node_part(P) += crossed + crossed.transpose() + t.S * slow_slow * t.S.transpose();
-  const SlowVector left = decay(layout, pre.dt);
-  node_by_slow(P) = -(t.F * by_slow + t.S * slow_slow) * left.asDiagonal();
+  const Eigen::PartialPivLU<NodeMatrix> J1(m.J_x1);  // block lower triangular, invertible blocks
+  NodeByState T(m.r.size(), layout.size());
+  T << J1.solve(-m.J_x0), J1.solve(-slow_jacobian(m, layout));
+  const NodeMatrix B = J1.solve(NodeMatrix::Identity());
+  const NodeByState carried = T * covariance_x0;
+  StateMatrix P = covariance_x0;
+  node_part(P) = carried * T.transpose() + B * pre.covariance * B.transpose();
+  node_by_slow(P) = carried.rightCols(layout.slow_size());
   slow_by_node(P) = node_by_slow(P).transpose();
-  slow_part(P) = left.asDiagonal() * slow_slow * left.asDiagonal();
-  slow_part(P).diagonal() += driving_variance(layout, pre.dt);
   return 0.5 * (P + P.transpose());
 }
 

@@ -219,14 +219,14 @@ void Preintegrator::propagate_covariance(const ImuIncrement& increment, const Ma
 }
 
 Preintegration Preintegrator::result() const {
-  Preintegration out = m_;
+  Preintegration out{m_};
   put_jacobians(out);
   put_covariance(out.covariance);
   return out;
 }
 
 /// eps = C dtheta, and the true increments are the measured ones times the gain.
-void Preintegrator::put_jacobians(Preintegration& out) const {
+void Preintegrator::put_jacobians(MotionDeltas& out) const {
   const Matrix3d Ct = C_.transpose();
   out.by_gyro_bias.dq = Ct * m_.by_gyro_bias.dq;
   if (!m_.scale) return;

@@ -290,9 +290,8 @@ TEST(Motion, PredictedCovarianceIsThatOfPerturbedPredictions) {
 
 const Block kOther{"other", 2, "1"};  ///< does not act on the IMU
 
-/// The gyro's scale decays to 0.67 in a second.
 Layout slow_blocks() {
-  return Layout().add(block::accel_scale, 0.03).add(kOther, 0.5).add(block::gyro_scale, 0.02, 2.5);
+  return Layout().add(block::accel_scale, 0.03).add(kOther, 0.5).add(block::gyro_scale, 0.02);
 }
 
 StateMatrix random_covariance(int size, unsigned seed) {
@@ -329,39 +328,16 @@ TEST(Motion, PredictedCovarianceWithSlowBlocksIsThatOfPerturbedPredictions) {
     };
     phi.col(i).head<kNodeSize>() = (moved(1e-6) - moved(-1e-6)) / 2e-6;
   }
-  const double left = std::exp(-1 / 2.5);
-  phi.diagonal().tail(n) << 1, 1, 1, 1, 1, left, left, left;
+  phi.diagonal().tail(n).setOnes();
   const StateMatrix P = random_covariance(layout.size(), 3);
   StateMatrix expected = phi * P * phi.transpose();
-  node_part(expected) += predict_covariance(x0, x1, pre, earth, NodeMatrix(NodeMatrix::Zero()));
-  expected.diagonal().tail<3>().array() += (1 - left * left) * 0.02 * 0.02;
+  const StateMatrix nothing = StateMatrix::Zero(layout.size(), layout.size());
+  expected += predict_covariance(x0, x1, pre, earth, nothing, layout, slow);
 
   const StateMatrix predicted = predict_covariance(x0, x1, pre, earth, P, layout, slow);
   // Rounding in central differences: 1e2 m * 1e-16 / 1e-6.
   const StateVector s = expected.diagonal().cwiseSqrt().cwiseInverse();
   EXPECT_LT((s.asDiagonal() * (predicted - expected) * s.asDiagonal()).cwiseAbs().maxCoeff(), 3e-8);
-}
-
-TEST(Motion, PredictedCovarianceWithoutSlowBlocksIsThatOfTheNode) {
-  const EarthModel earth = wuhan_earth();
-  const ClosedFormMotion motion(earth);
-  const Preintegration pre = preintegrate(motion.increments(2, 3, 100));
-  const NodeState x0 = motion.state(2);
-  const NodeState x1 = predict(x0, pre, earth);
-  const StateMatrix P = random_covariance(kNodeSize, 4);
-  EXPECT_EQ(predict_covariance(x0, x1, pre, earth, P, Layout(), SlowVector(0)),
-            predict_covariance(x0, x1, pre, earth, NodeMatrix(P)));
-}
-
-TEST(Motion, RefusesScalesThatWereNotIntegrated) {
-  const ClosedFormMotion motion(wuhan_earth());
-  const Preintegration pre = preintegrate(motion.increments(2, 3, 100));
-  const Layout layout = slow_blocks();
-  const StateMatrix P = random_covariance(layout.size(), 5);
-  const SlowVector slow = SlowVector::Zero(layout.slow_size());
-  EXPECT_THROW(
-      predict_covariance(motion.state(2), motion.state(3), pre, wuhan_earth(), P, layout, slow),
-      std::invalid_argument);
 }
 
 }  // namespace

@@ -14,10 +14,6 @@
 /// outage of half an hour leaves a position to kilometres, and (1e-4 / 1e4)^2 is below rounding.
 namespace foucault {
 
-/// Node by (node, border).
-using NodeByState =
-    Eigen::Matrix<double, kNodeSize, Eigen::Dynamic, Eigen::ColMajor, kNodeSize, kMostSize>;
-
 /// Rows that say something of a node's tangent and the border's, d: cost |r + S d|^2 / 2.
 struct NodeInformation {
   StateMatrix S;  ///< upper triangular

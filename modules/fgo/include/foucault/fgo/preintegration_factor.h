@@ -3,8 +3,6 @@
 #include <ceres/cost_function.h>
 
 #include <array>
-#include <memory>
-#include <optional>
 
 #include "foucault/fgo/state_block.h"
 #include "foucault/preintegration/motion.h"
@@ -19,24 +17,9 @@ struct IntervalRows {
   NodeBySlow J_slow;
 };
 
-/// A Preintegration without its covariance and what scale factors do to it: a third of its size.
-struct PreintegratedMotion {
-  int64_t t_begin_ns, t_end_ns;
-  double dt;
-  Eigen::Quaterniond dq;
-  Eigen::Vector3d dv, dp, idp, iidp;
-  ImuBias bias;
-  double gyro_bias_decay, accel_bias_decay;
-  DeltaJacobian by_gyro_bias, by_accel_bias;
-};
-struct ScaledMotion {
-  std::optional<ImuScale> scale;
-  DeltaJacobian by_gyro_scale, by_accel_scale;
-};
-
 /// Residual (49) between two neighbouring nodes, whitened by the covariance (43).
 /// Blocks: node k-1, node k, and the border if there is one. The square-root information is built
-/// once, here. 1.9 kB, 2.4 kB with scale factors: a batch keeps one for each of its nodes.
+/// once, here. 2.4 kB: a batch keeps one for each of its nodes.
 class PreintegrationFactor final : public ceres::CostFunction {
  public:
   /// Throws std::invalid_argument if the covariance is not positive definite.
@@ -48,7 +31,7 @@ class PreintegrationFactor final : public ceres::CostFunction {
   /// The residual alone.
   NodeVector residual(const NodeState& x0, const NodeState& x1, const SlowVector& slow) const;
 
-  int64_t t_begin_ns() const { return motion_.t_begin_ns; }
+  int64_t t_begin_ns() const { return deltas_.t_begin_ns; }
   /// An angle [rad] by which the interval turns otherwise than it was integrated, if these are the
   /// bias and the slow blocks.
   double turned_by(const ImuBias& bias, const SlowVector& slow) const;
@@ -63,11 +46,9 @@ class PreintegrationFactor final : public ceres::CostFunction {
   bool Evaluate(double const* const* blocks, double* residual, double** jacobians) const override;
 
  private:
-  Preintegration without_covariance() const;
   NodeMatrix sqrt_information() const;
 
-  PreintegratedMotion motion_;
-  std::unique_ptr<ScaledMotion> scaled_;  ///< if it was integrated at scale factors
+  MotionDeltas deltas_;
   EarthModel earth_;
   /// Inverse Cholesky factor of the covariance, its lower triangle.
   static constexpr int kRows = NodeVector::RowsAtCompileTime;

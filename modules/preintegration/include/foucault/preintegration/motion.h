@@ -45,31 +45,24 @@ struct MotionResidual {
   NodeByAxis J_accel_scale = NodeByAxis::Zero();
 };
 /// Here and below: `scale` counts if the preintegration has one.
-MotionResidual motion_residual(const NodeState& x0, const NodeState& x1, const Preintegration& pre,
+MotionResidual motion_residual(const NodeState& x0, const NodeState& x1, const MotionDeltas& pre,
                                const EarthModel& earth, const ImuScale& scale = {});
 
 /// The residual alone.
-NodeVector motion_residual_value(const NodeState& x0, const NodeState& x1,
-                                 const Preintegration& pre, const EarthModel& earth,
-                                 const ImuScale& scale = {});
+NodeVector motion_residual_value(const NodeState& x0, const NodeState& x1, const MotionDeltas& pre,
+                                 const EarthModel& earth, const ImuScale& scale = {});
 
 /// Jacobian of the residual by the slow blocks; only the IMU's scale factors are in it.
 NodeBySlow slow_jacobian(const MotionResidual& m, const Layout& layout);
 
 /// The x1 that makes the residual zero.
-NodeState predict(const NodeState& x0, const Preintegration& pre, const EarthModel& earth,
+NodeState predict(const NodeState& x0, const MotionDeltas& pre, const EarthModel& earth,
                   const ImuScale& scale = {});
 
-/// Covariance of predict(x0) for a covariance of x0.
-NodeMatrix predict_covariance(const NodeState& x0, const NodeState& x1, const Preintegration& pre,
-                              const EarthModel& earth, const NodeMatrix& covariance_x0);
-
-/// The same with slow blocks of the values `slow`. They act on the interval as they are at its
-/// begin, d1 = F d0 + S d_slow, and decay over it as their Gauss-Markov processes do.
-/// Throws std::invalid_argument if scale factors are estimated of which the preintegration has
-/// none.
+/// Covariance of predict(x0) for a covariance of x0 and of slow blocks, constants of the values
+/// `slow`. Precondition: where scale factors are among them the preintegration has a scale.
 StateMatrix predict_covariance(const NodeState& x0, const NodeState& x1, const Preintegration& pre,
                                const EarthModel& earth, const StateMatrix& covariance_x0,
-                               const Layout& layout, const SlowVector& slow);
+                               const Layout& layout = {}, const SlowVector& slow = SlowVector(0));
 
 }  // namespace foucault

@@ -28,7 +28,7 @@ struct DeltaJacobian {
 /// integrated again when the attitude moves.
 ///
 /// Errors are true minus measured: p = dp + e_p, v = dv + e_v, q = dq * exp(e_theta).
-struct Preintegration {
+struct MotionDeltas {
   int64_t t_begin_ns = 0;
   int64_t t_end_ns = 0;
   double dt = 0;                                           ///< T [s]
@@ -51,7 +51,9 @@ struct Preintegration {
   /// Both zero without `scale`.
   DeltaJacobian by_gyro_scale;
   DeltaJacobian by_accel_scale;  ///< dq does not change
+};
 
+struct Preintegration : MotionDeltas {
   /// Covariance of the errors, (43); blocks of a node, bias rows: change over the interval.
   NodeMatrix covariance = NodeMatrix::Zero();
 };
@@ -109,7 +111,7 @@ class Preintegrator {
   void add_noise(double h, double q_g, double q_a);
   void set_bias_decay(double dt);
 
-  void put_jacobians(Preintegration& out) const;
+  void put_jacobians(MotionDeltas& out) const;
   void put_covariance(NodeMatrix& S) const;
 
   /// Blocks of the covariance that are not zero; e = eps, g = gyro bias, a = accel bias.
@@ -122,7 +124,7 @@ class Preintegrator {
   ImuNoise noise_;
   double gyro_bias_power_, accel_bias_power_;
   std::optional<ImuIncrement> previous_;
-  Preintegration m_;  ///< until result() its Jacobians have eps for dq, and no gain in the columns
+  MotionDeltas m_;  ///< until result() its Jacobians have eps for dq, and no gain in the columns
   ImuScale gain_{Eigen::Vector3d::Ones(), Eigen::Vector3d::Ones()};  ///< 1 / (1 + scale)
   Eigen::Matrix3d C_ = Eigen::Matrix3d::Identity();
   Blocks cov_;

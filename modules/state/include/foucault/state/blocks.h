@@ -67,7 +67,9 @@ using RowsByState =
 template <int kMostColumns>
 using StateByColumns =
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMostSize, kMostColumns>;
-/// The rows of the motion.
+/// The rows of a node, and of its motion.
+using NodeByState =
+    Eigen::Matrix<double, kNodeSize, Eigen::Dynamic, Eigen::ColMajor, kNodeSize, kMostSize>;
 using MotionByState =
     Eigen::Matrix<double, kMotionSize, Eigen::Dynamic, Eigen::ColMajor, kMotionSize, kMostSize>;
 
