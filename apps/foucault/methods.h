@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "foucault/state/interfaces.h"
 #include "foucault/core/profile.h"
+#include "foucault/state/interfaces.h"
 #include "settings.h"
 
 /// The methods that `run` and `evaluate` know. A new one is a function and a line in methods.cpp.

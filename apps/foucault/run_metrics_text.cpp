@@ -226,7 +226,8 @@ reports::Table reference_table(const ReferenceMetrics& r) {
 reports::Table aids_table(const std::map<std::string, AidMetrics>& aids) {
   reports::Table table;
   table.title = "Other measurements";
-  table.note = "Mean NIS: innovations squared by their covariance; as many as components if it is right.";
+  table.note =
+      "Mean NIS: innovations squared by their covariance; as many as components if it is right.";
   table.header = {"", "used", "rejected", "mean NIS"};
   for (const auto& [name, aid] : aids) {
     table.rows.push_back({name, fmt::format("{}", aid.used), fmt::format("{}", aid.rejected),

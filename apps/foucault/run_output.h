@@ -4,10 +4,10 @@
 #include <optional>
 
 #include "console.h"
-#include "foucault/state/interfaces.h"
 #include "foucault/evaluation/reference_error.h"
 #include "foucault/evaluation/run_metrics.h"
 #include "foucault/reports/run_report.h"
+#include "foucault/state/interfaces.h"
 #include "settings.h"
 #include "solution_writer.h"
 

@@ -5,8 +5,8 @@
 #include <optional>
 #include <string>
 
-#include "foucault/state/interfaces.h"
 #include "foucault/geodesy/local_frame.h"
+#include "foucault/state/interfaces.h"
 #include "text_file.h"
 #include "track_kml.h"
 

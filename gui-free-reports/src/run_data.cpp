@@ -194,8 +194,7 @@ void RunData::add(const Epoch& epoch) {
   velocity.add(t, epoch.velocity_n, epoch.sigma_of(block::velocity));
   gyro_bias.add(t, kDegreesPerHour * epoch.bias.gyro,
                 kDegreesPerHour * epoch.sigma_of(block::gyro_bias));
-  accel_bias.add(t, kMilligal * epoch.bias.accel,
-                 kMilligal * epoch.sigma_of(block::accel_bias));
+  accel_bias.add(t, kMilligal * epoch.bias.accel, kMilligal * epoch.sigma_of(block::accel_bias));
 
   const VehicleAttitude vehicle = vehicle_attitude(epoch, mounting_);
   so3::Euler euler = vehicle.euler;

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "foucault/core/consistency.h"
+#include "foucault/reports/decimation.h"
 #include "foucault/state/interfaces.h"
 #include "foucault/state/result.h"
-#include "foucault/reports/decimation.h"
 
 /// What a run report keeps of a run, in bounded memory. Times in seconds since the first stamp.
 namespace foucault::reports {

@@ -4,9 +4,9 @@
 #include <optional>
 #include <string>
 
-#include "foucault/state/interfaces.h"
 #include "foucault/rawlog/import.h"
 #include "foucault/rawlog/rawlog_writer.h"
+#include "foucault/state/interfaces.h"
 #include "text_table.h"
 
 namespace foucault::rawlog {

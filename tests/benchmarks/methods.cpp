@@ -60,8 +60,8 @@ void ekf(benchmark::State& state) {
   const Trip trip = simulated_trip(kDuration, 1);
   EpochCounter counter;
   for ([[maybe_unused]] const auto _ : state) {
-    NavigationRun run(std::make_unique<EkfNavigator>(trip.noise, Layout{}, EkfOptions{}), aligner(trip),
-                      NavigationRunOptions{}, counter);
+    NavigationRun run(std::make_unique<EkfNavigator>(trip.noise, Layout{}, EkfOptions{}),
+                      aligner(trip), NavigationRunOptions{}, counter);
     process(trip, run);
   }
   state.counters[kThings] = static_cast<double>(trip.samples);

@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "foucault/state/interfaces.h"
 #include "foucault/inertial/imu_noise.h"
+#include "foucault/state/interfaces.h"
 
 namespace foucault::benchmarks {
 

@@ -234,8 +234,7 @@ MeanNees mean_nees(const std::string& method, ScenarioOptions scenario, const Im
     const auto normalized = [&](const Eigen::Vector3d& error, const NodeBlock& of) {
       return normalized_square(error, estimate.covariance_of(of)).value() / kRuns;
     };
-    mean.position +=
-        normalized(ned_offset(estimate.position, truth.position), block::position);
+    mean.position += normalized(ned_offset(estimate.position, truth.position), block::position);
     mean.velocity += normalized(truth.velocity_n - estimate.velocity_n, block::velocity);
     mean.attitude +=
         normalized(so3::log(estimate.q_n_b.conjugate() * truth.q_n_b), block::attitude);

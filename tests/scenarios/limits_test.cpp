@@ -160,8 +160,9 @@ std::deque<SmoothedEpoch> rts(const Drive& drive) {
 }
 
 std::deque<SmoothedEpoch> batch(const Drive& drive) {
-  return smoothed(drive, BatchRecorder(std::make_unique<EkfNavigator>(drive.noise, Layout{}, EkfOptions{}),
-                                       FgoOptions{}, PreintegrationModel::full, drive.noise));
+  return smoothed(drive,
+                  BatchRecorder(std::make_unique<EkfNavigator>(drive.noise, Layout{}, EkfOptions{}),
+                                FgoOptions{}, PreintegrationModel::full, drive.noise));
 }
 
 double smallest_eigenvalue_in_sigmas(const NodeMatrix& P) {

@@ -25,9 +25,11 @@ constexpr int kTrips = 3;
 std::unique_ptr<Estimator> make_estimator(const std::string& method, const ImuNoise& noise,
                                           const Mounting& mounting, Sink& sink) {
   Aligner aligner(AlignmentOptions{}, noise, mounting);
-  if (method == "rts") return make_rts_smoother(noise, Layout{}, EkfOptions{}, std::move(aligner), {}, sink);
-  return std::make_unique<NavigationRun>(std::make_unique<EkfNavigator>(noise, Layout{}, EkfOptions{}),
-                                         std::move(aligner), NavigationRunOptions{}, sink);
+  if (method == "rts")
+    return make_rts_smoother(noise, Layout{}, EkfOptions{}, std::move(aligner), {}, sink);
+  return std::make_unique<NavigationRun>(
+      std::make_unique<EkfNavigator>(noise, Layout{}, EkfOptions{}), std::move(aligner),
+      NavigationRunOptions{}, sink);
 }
 
 /// Six outages of 60 s. `assumed`: what the method takes for the noise of its ADIS16465.

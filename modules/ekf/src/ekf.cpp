@@ -30,8 +30,7 @@ void EkfNavigator::propagate(const ImuIncrement& increment) {
   if (integrals_.dt + increment.dt() > cov_interval_) catch_up();
   rates_.add(increment);
   ImuIncrement clean = without_bias(increment, state_.bias);
-  if (state_.slow.size() > 0)
-    clean = without_scale(clean, noise_.layout.imu_scale(state_.slow));
+  if (state_.slow.size() > 0) clean = without_scale(clean, noise_.layout.imu_scale(state_.slow));
   state_ = advance(state_, previous_, clean);
   const Eigen::Matrix3d R_n_b = state_.q_n_b.toRotationMatrix();
   integrals_.add(clean, R_n_b_, R_n_b, noise_.imu);

@@ -209,8 +209,8 @@ void MotionIntegrals::add(const ImuIncrement& increment, const Eigen::Matrix3d& 
                             std::pow(increment.extra_accel_noise_density, 2));
 }
 
-Transition transition(const MotionIntegrals& integrals, const NavState& begin,
-                      const NavState& end, const ProcessNoise& noise) {
+Transition transition(const MotionIntegrals& integrals, const NavState& begin, const NavState& end,
+                      const ProcessNoise& noise) {
   const Eigen::Vector3d v_n = 0.5 * (begin.velocity_n + end.velocity_n);
   const Place place(displaced(begin.position, 0.5 * integrals.dt * v_n, Place(begin.position)));
   const StateMatrix dynamics = mean_dynamics(integrals, place, v_n, noise);

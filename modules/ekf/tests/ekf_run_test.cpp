@@ -69,8 +69,8 @@ class EkfRun : public ::testing::Test {
     source_ = std::make_unique<SimulatedSource>(scenario_, noise_);
     sink_ = std::make_unique<ErrorSink>(*source_, scenario_.start_ns());
     Aligner aligner(AlignmentOptions{}, noise_, source_->mounting());
-    NavigationRun driver(std::make_unique<EkfNavigator>(noise_, Layout{}, EkfOptions{}), std::move(aligner),
-                         NavigationRunOptions{}, *sink_);
+    NavigationRun driver(std::make_unique<EkfNavigator>(noise_, Layout{}, EkfOptions{}),
+                         std::move(aligner), NavigationRunOptions{}, *sink_);
     while (const std::optional<Measurement> m = source_->next()) driver.process(*m);
     driver.finish();
     return *sink_;

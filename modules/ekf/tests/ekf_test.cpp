@@ -69,8 +69,7 @@ struct Fixture {
     for (int i = 0; i < kSize; ++i) {
       const Vector step = 1e-3 * Vector::Unit(kSize, i);
       H.col(i) =
-          (innovation_from(boxplus(state, -step)) - innovation_from(boxplus(state, step))) /
-          2e-3;
+          (innovation_from(boxplus(state, -step)) - innovation_from(boxplus(state, step))) / 2e-3;
     }
     return H;
   }
@@ -85,7 +84,7 @@ struct Fixture {
 /// P+ = (P^-1 + H' R^-1 H)^-1.
 template <int kRows>
 NodeMatrix information_update(const NodeMatrix& prior, const Eigen::Matrix<double, kRows, kSize>& H,
-                             const Eigen::Matrix<double, kRows, kRows>& R) {
+                              const Eigen::Matrix<double, kRows, kRows>& R) {
   const NodeMatrix information = prior.inverse() + H.transpose() * R.inverse() * H;
   return information.inverse();
 }
@@ -186,8 +185,7 @@ TEST(Ekf, VelocityOfAFixActsThroughTheLeverArm) {
                          2e-4;
     H.col(i).tail<3>() = (antenna_velocity(plus, gyro_b) - antenna_velocity(minus, gyro_b)) / 2e-4;
   }
-  f.fix.antenna =
-      displaced(now.position, now.q_n_b * kLeverArm, Place(now.position));
+  f.fix.antenna = displaced(now.position, now.q_n_b * kLeverArm, Place(now.position));
   f.fix.velocity_n = antenna_velocity(now, gyro_b);
   f.fix.velocity_covariance = Eigen::Vector3d(1e-4, 4e-4, 9e-4).asDiagonal();
   filter.update(gnss_position(f.fix));
@@ -394,7 +392,10 @@ TEST(Ekf, OneAheadIsTheFilterWithOtherSigmas) {
   const std::unique_ptr<Navigator> ahead = filter.ahead(1);
   const GnssFix fix = fixture.trip.exact_fix(filter.epoch().t_ns, {0.03, 0.02, 0.05});
   EXPECT_EQ(ahead->innovation(GnssPosition(fix)).value, filter.innovation(GnssPosition(fix)).value);
-  EXPECT_LT((doubtful->innovation(GnssPosition(fix)).value - filter.innovation(GnssPosition(fix)).value).norm(), 1e-9);
+  EXPECT_LT(
+      (doubtful->innovation(GnssPosition(fix)).value - filter.innovation(GnssPosition(fix)).value)
+          .norm(),
+      1e-9);
   const Epoch before = filter.epoch();
   ahead->update(gnss_position(fix));
   EXPECT_EQ(filter.epoch().covariance, before.covariance);

@@ -44,7 +44,8 @@ LinearProblem random_problem() {
     for (int i = 0; i < 15; ++i) mix.col(i) = 0.2 * test::draw15(rng);
     mix.bottomRows<15 - kMotionSize>() =
         NodeMatrix(mix.diagonal().asDiagonal()).bottomRows<15 - kMotionSize>();
-    p.phi.push_back(s.asDiagonal() * (NodeMatrix::Identity() + mix) * s.cwiseInverse().asDiagonal());
+    p.phi.push_back(s.asDiagonal() * (NodeMatrix::Identity() + mix) *
+                    s.cwiseInverse().asDiagonal());
     p.Q.push_back(0.1 * test::random_covariance(rng, s));
     p.z.push_back(0.3 * test::draw3(rng));
   }
@@ -117,9 +118,10 @@ TEST(Rts, EqualsBatchLeastSquaresOnALinearProblem) {
   for (int k = 0; k < LinearProblem::kNodes; ++k) {
     const NodeVector x = boxminus(nodes[k].state, origin());
     const NodeVector dx = units.asDiagonal() * (x - batch.x.segment<15>(15 * k));
-    const NodeMatrix dP = units.asDiagonal() *
-                         (nodes[k].covariance.full() - batch.covariance.block<15, 15>(15 * k, 15 * k)) *
-                         units.asDiagonal();
+    const NodeMatrix dP =
+        units.asDiagonal() *
+        (nodes[k].covariance.full() - batch.covariance.block<15, 15>(15 * k, 15 * k)) *
+        units.asDiagonal();
     // A metre of the ellipsoid is linear to 1e-7.
     EXPECT_LT(dx.cwiseAbs().maxCoeff(), 1e-6) << "node " << k;
     EXPECT_LT(dP.cwiseAbs().maxCoeff(), 1e-9) << "node " << k;
@@ -200,8 +202,8 @@ BothWays run_both_ways(const ScenarioOptions& scenario, const ImuNoise& noise) {
   {
     SimulatedSource source(scenario, noise);
     Aligner aligner(given_alignment(source, start_ns), noise, source.mounting());
-    NavigationRun run(std::make_unique<EkfNavigator>(noise, Layout{}, EkfOptions{}), std::move(aligner),
-                      NavigationRunOptions{}, both.forward);
+    NavigationRun run(std::make_unique<EkfNavigator>(noise, Layout{}, EkfOptions{}),
+                      std::move(aligner), NavigationRunOptions{}, both.forward);
     feed(run, source, start_ns);
   }
   both.smoothed = run_smoother(scenario, noise);

@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "foucault/core/so3.h"
-#include "foucault/state/blocks.h"
 #include "foucault/core/time.h"
 #include "foucault/geodesy/local_frame.h"
+#include "foucault/state/blocks.h"
 
 namespace foucault {
 namespace {

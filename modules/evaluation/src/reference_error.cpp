@@ -7,8 +7,8 @@
 
 #include "foucault/core/so3.h"
 #include "foucault/core/time.h"
-#include "foucault/state/vehicle_attitude.h"
 #include "foucault/geodesy/local_frame.h"
+#include "foucault/state/vehicle_attitude.h"
 
 namespace foucault {
 namespace {

@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "foucault/core/so3.h"
-#include "foucault/state/blocks.h"
 #include "foucault/core/time.h"
+#include "foucault/state/blocks.h"
 #include "foucault/state/vehicle_attitude.h"
 
 namespace foucault {

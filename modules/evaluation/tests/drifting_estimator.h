@@ -4,9 +4,9 @@
 #include <optional>
 #include <variant>
 
-#include "foucault/state/interfaces.h"
 #include "foucault/core/time.h"
 #include "foucault/geodesy/local_frame.h"
+#include "foucault/state/interfaces.h"
 
 /// A recording and an estimator whose drifts are known exactly.
 namespace foucault::test {

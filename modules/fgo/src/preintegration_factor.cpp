@@ -52,14 +52,13 @@ Preintegration PreintegrationFactor::preintegration() const {
 IntervalRows PreintegrationFactor::linearize(const NodeState& x0, const NodeState& x1,
                                              const SlowVector& slow) const {
   const MotionResidual m = motion_residual(x0, x1, deltas_, earth_, layout_.imu_scale(slow));
-  const NodeMatrix root = sqrt_information();
-  const auto whiten = root.triangularView<Eigen::Lower>();
+  const NodeMatrix root = sqrt_information();  // products of triangles of this size are slower
   IntervalRows out;
-  out.r.noalias() = whiten * m.r;
-  out.J_x0.noalias() = whiten * m.J_x0;
-  out.J_x1.noalias() = whiten * m.J_x1;
+  out.r.noalias() = root * m.r;
+  out.J_x0.noalias() = root.lazyProduct(m.J_x0);
+  out.J_x1.noalias() = root.lazyProduct(m.J_x1);
   out.J_slow = slow_jacobian(m, layout_);
-  if (deltas_.scale) out.J_slow = whiten * out.J_slow;
+  if (deltas_.scale) out.J_slow = root * out.J_slow;
   return out;
 }
 

@@ -59,14 +59,15 @@ Geodetic ecef_to_geodetic(const Eigen::Vector3d& p_e) {
   const double p = std::hypot(p_e.x(), p_e.y());
   // Bowring's iteration on the reduced latitude (beta); each step gains a factor of about
   // e^4 h / a, so two are exact to rounding within 100 km and the third serves higher places.
+  const int steps = p_e.norm() < kSemiMajorAxis + 1e5 ? 2 : 3;
   double beta = std::atan2(p_e.z() * kSemiMajorAxis, p * kSemiMinorAxis);
   double latitude = 0;
-  for (int i = 0; i < 3; ++i) {
+  for (int i = 0; i < steps; ++i) {
+    if (i > 0) beta = std::atan2((1 - kFlattening) * std::sin(latitude), std::cos(latitude));
     const double s = std::sin(beta);
     const double c = std::cos(beta);
     latitude = std::atan2(p_e.z() + kSecondEccentricity2 * kSemiMinorAxis * s * s * s,
                           p - kEccentricity2 * kSemiMajorAxis * c * c * c);
-    beta = std::atan2((1 - kFlattening) * std::sin(latitude), std::cos(latitude));
   }
   const double s = std::sin(latitude);
   const double height =

@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "foucault/state/blocks.h"
 #include "foucault/core/time.h"
-#include "foucault/measurement/gnss_position.h"
 #include "foucault/geodesy/local_frame.h"
 #include "foucault/inertial/increments.h"
+#include "foucault/measurement/gnss_position.h"
+#include "foucault/state/blocks.h"
 
 namespace foucault {
 namespace {

@@ -11,8 +11,8 @@
 
 #include "fix_judge.h"
 #include "foucault/core/measurement.h"
-#include "foucault/state/result.h"
 #include "foucault/inertial/navigator.h"
+#include "foucault/state/result.h"
 #include "return_trial.h"
 
 namespace foucault {
@@ -38,7 +38,7 @@ struct FixDecision {
 
 /// What became of a doubt.
 struct DoubtOutcome {
-  std::vector<FixDecision> fixes;     ///< from the one that raised it on, in order
+  std::vector<FixDecision> fixes;      ///< from the one that raised it on, in order
   std::optional<NodeMatrix> loosened;  ///< what the state is to be loosened by before the first
   bool state_was_wrong = false;
   std::vector<double> level;         ///< normalized squares that fixes were found to have

@@ -50,7 +50,8 @@ class FixJudge {
   int64_t gate_open_until_ns_ = INT64_MIN;
   int64_t state_doubted_until_ns_ = INT64_MIN;
   std::deque<double> squares_;  ///< normalized innovations squared, the last ones
-  double believed_level_ = 1;   ///< mean normalized innovation squared of believed ones, over its expectation
+  double believed_level_ =
+      1;  ///< mean normalized innovation squared of believed ones, over its expectation
 };
 
 }  // namespace foucault

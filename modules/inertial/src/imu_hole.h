@@ -5,9 +5,9 @@
 #include <optional>
 
 #include "foucault/core/measurement.h"
-#include "foucault/state/result.h"
 #include "foucault/core/time.h"
 #include "foucault/inertial/navigation_run.h"
+#include "foucault/state/result.h"
 
 namespace foucault {
 

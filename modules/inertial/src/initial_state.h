@@ -5,8 +5,8 @@
 #include <optional>
 
 #include "foucault/core/measurement.h"
-#include "foucault/state/result.h"
 #include "foucault/inertial/imu_noise.h"
+#include "foucault/state/result.h"
 
 namespace foucault {
 

@@ -110,8 +110,7 @@ void AidOptions::fields(ConfigFields& f) {
 void AidOptions::apply_to(GnssFix& fix) const {
   if (mode == "none") fix.velocity_n.reset();
   if (gnss_velocity_sigma_m_s)
-    fix.velocity_covariance =
-        std::pow(*gnss_velocity_sigma_m_s, 2) * Eigen::Matrix3d::Identity();
+    fix.velocity_covariance = std::pow(*gnss_velocity_sigma_m_s, 2) * Eigen::Matrix3d::Identity();
 }
 
 NavigationRun::~NavigationRun() = default;

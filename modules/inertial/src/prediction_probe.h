@@ -6,8 +6,8 @@
 #include <optional>
 
 #include "foucault/core/measurement.h"
-#include "foucault/state/result.h"
 #include "foucault/inertial/navigator.h"
+#include "foucault/state/result.h"
 
 namespace foucault {
 

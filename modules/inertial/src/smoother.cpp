@@ -31,8 +31,8 @@ NodeVector error_between(double s, double length, const SmoothedEpoch& begin,
   using namespace block;
   const NodeVector& a = begin.after;
   const NodeVector& b = end.before;
-  const Eigen::Vector3d attitude_n = (1 - s) * (begin.state.q_n_b * part(a, attitude)) +
-                                     s * (end.state.q_n_b * part(b, attitude));
+  const Eigen::Vector3d attitude_n =
+      (1 - s) * (begin.state.q_n_b * part(a, attitude)) + s * (end.state.q_n_b * part(b, attitude));
   NodeVector error = (1 - s) * a + s * b;
   part(error, position) = hermite(s, part(a, position), length * part(a, velocity),
                                   part(b, position), length * part(b, velocity));
@@ -93,14 +93,15 @@ void Smoother::Keeper::give_out() {
   const StageTimer timer(Stage::smooth);
   const std::deque<SmoothedEpoch> nodes = recording_.smoothed();
   throw_if_unsound(nodes);
-  const auto give = Overloaded{
-      [&](const NodeEpoch& e) { sink_.epoch(nodes[e.node].epoch()); },
-      [&](const BetweenEpoch& e) {
-        sink_.epoch(between(nodes[e.node], nodes[e.node + 1], e.forward));
-      },
-      [&](const NodeFix& f) { sink_.fix(with_postfit(f.result, nodes[f.node].state)); },
-      [&](const FixResult& f) { sink_.fix(f); },
-      [&](const ObservationResult& o) { sink_.observation(o); }, [&](const Notice& n) { sink_.notice(n); }};
+  const auto give =
+      Overloaded{[&](const NodeEpoch& e) { sink_.epoch(nodes[e.node].epoch()); },
+                 [&](const BetweenEpoch& e) {
+                   sink_.epoch(between(nodes[e.node], nodes[e.node + 1], e.forward));
+                 },
+                 [&](const NodeFix& f) { sink_.fix(with_postfit(f.result, nodes[f.node].state)); },
+                 [&](const FixResult& f) { sink_.fix(f); },
+                 [&](const ObservationResult& o) { sink_.observation(o); },
+                 [&](const Notice& n) { sink_.notice(n); }};
   for (const auto& kept : kept_) std::visit(give, kept);
 }
 

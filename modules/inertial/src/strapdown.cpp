@@ -1,6 +1,5 @@
 #include "foucault/inertial/strapdown.h"
 
-
 #include "foucault/core/so3.h"
 #include "foucault/geodesy/place.h"
 #include "foucault/inertial/increments.h"
@@ -56,8 +55,9 @@ NavState advance(const NavState& state, const ImuIncrement& previous,
 
   NavState next = state;
   next.t_ns = increment.t_end_ns;
-  next.velocity_n = state.velocity_n + sensed_velocity_n - 0.5 * frame_rotation_n.cross(sensed_velocity_n) +
-             dt * mid.free_acceleration_n(mid_v_n);
+  next.velocity_n = state.velocity_n + sensed_velocity_n -
+                    0.5 * frame_rotation_n.cross(sensed_velocity_n) +
+                    dt * mid.free_acceleration_n(mid_v_n);
   next.position = displaced(state.position, 0.5 * dt * (state.velocity_n + next.velocity_n), mid);
   next.q_n_b =
       (so3::exp(-frame_rotation_n) * state.q_n_b * so3::exp(sensed.rotation_b)).normalized();

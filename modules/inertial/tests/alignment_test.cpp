@@ -114,14 +114,11 @@ void add_run(Consistency& sum, const Epoch& epoch, const Truth& truth, const Imu
   const NodeVector error = error_of(epoch, truth, bias);
   const Eigen::Matrix3d R = epoch.q_n_b.toRotationMatrix();
   const Vector3d attitude = R * part(error, block::attitude);
-  const Eigen::Matrix3d attitude_P =
-      R * epoch.covariance_of(block::attitude) * R.transpose();
+  const Eigen::Matrix3d attitude_P = R * epoch.covariance_of(block::attitude) * R.transpose();
   for (int axis = 0; axis < 3; ++axis) {
     const double a = square(attitude[axis]) / attitude_P(axis, axis);
-    const double g =
-        square(part(error, gyro_bias)[axis]) / square(epoch.sigma_of(gyro_bias)[axis]);
-    const double v =
-        square(part(error, velocity)[axis]) / square(epoch.sigma_of(velocity)[axis]);
+    const double g = square(part(error, gyro_bias)[axis]) / square(epoch.sigma_of(gyro_bias)[axis]);
+    const double v = square(part(error, velocity)[axis]) / square(epoch.sigma_of(velocity)[axis]);
     sum.attitude_n[axis] += a;
     sum.gyro_bias[axis] += g;
     sum.velocity += v / 3;

@@ -68,7 +68,8 @@ Closure free_inertial_closure(const Trajectory& trajectory, const Window& run) {
   }
   const NavState truth = true_state(trajectory, begin_ns + steps * step_ns);
   return {displacement_n(truth.position, state.position, Place(truth.position)).norm(),
-          (state.velocity_n - truth.velocity_n).norm(), so3::log(truth.q_n_b.conjugate() * state.q_n_b).norm()};
+          (state.velocity_n - truth.velocity_n).norm(),
+          so3::log(truth.q_n_b.conjugate() * state.q_n_b).norm()};
 }
 
 /// The worst of several windows of a trip.

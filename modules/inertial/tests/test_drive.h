@@ -6,14 +6,14 @@
 #include <random>
 #include <vector>
 
-#include "foucault/state/interfaces.h"
 #include "foucault/core/measurement.h"
-#include "foucault/state/result.h"
 #include "foucault/core/so3.h"
 #include "foucault/core/time.h"
 #include "foucault/geodesy/local_frame.h"
 #include "foucault/geodesy/wgs84.h"
 #include "foucault/inertial/imu_noise.h"
+#include "foucault/state/interfaces.h"
+#include "foucault/state/result.h"
 
 namespace foucault::testing {
 

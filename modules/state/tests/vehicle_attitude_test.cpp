@@ -45,8 +45,7 @@ TEST(VehicleAttitude, SigmaIsThatOfSampledAttitudes) {
   epoch.q_n_b = so3::from_euler({0.3, 0.9, 2.5}) * mounting.q_v_b;
   Eigen::Matrix3d root;
   root << 2e-3, 0, 0, 1e-3, 3e-3, 0, -1e-3, 5e-4, 1e-3;
-  part(epoch.covariance, block::attitude, block::attitude) =
-      root * root.transpose();
+  part(epoch.covariance, block::attitude, block::attitude) = root * root.transpose();
   const VehicleAttitude mean = vehicle_attitude(epoch, mounting);
 
   constexpr int kSamples = 20'000;

@@ -5,9 +5,9 @@
 #include <string>
 
 #include "foucault/core/consistency.h"
+#include "foucault/reports/report_page.h"
 #include "foucault/state/interfaces.h"
 #include "foucault/state/result.h"
-#include "foucault/reports/report_page.h"
 
 namespace foucault::reports {
 

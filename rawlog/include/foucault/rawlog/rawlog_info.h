@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "foucault/state/interfaces.h"
 #include "foucault/core/measurement.h"
+#include "foucault/state/interfaces.h"
 
 namespace foucault {
 

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "foucault/core/config.h"
-#include "foucault/state/interfaces.h"
 #include "foucault/inertial/imu_noise.h"
+#include "foucault/state/interfaces.h"
 
 namespace foucault {
 

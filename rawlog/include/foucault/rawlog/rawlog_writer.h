@@ -5,9 +5,9 @@
 #include <string>
 #include <variant>
 
-#include "foucault/state/interfaces.h"
 #include "foucault/core/measurement.h"
 #include "foucault/inertial/increments.h"
+#include "foucault/state/interfaces.h"
 
 namespace foucault {
 

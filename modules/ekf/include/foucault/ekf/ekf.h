@@ -20,8 +20,8 @@ class EkfOptions : public Configurable {
 /// The state moves with every increment; the covariance follows in steps of several increments,
 /// whenever it is asked for and at least every cov_interval_s.
 /// The biases' nominal values stay as they are between updates (their turn-on values do not decay);
-/// their errors are the Gauss-Markov processes of MarkovBias, those of slow blocks as the layout has
-/// them.
+/// their errors are the Gauss-Markov processes of MarkovBias, those of slow blocks as the layout
+/// has them.
 class EkfNavigator : public Navigator {
  public:
   EkfNavigator(const ImuNoise& imu, const Layout& layout, const EkfOptions& options);

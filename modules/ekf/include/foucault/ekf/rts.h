@@ -12,9 +12,9 @@ namespace foucault {
 
 /// The forward solution at one instant, and how it came there from the node before.
 struct RtsNode {
-  NavState predicted;                    ///< before it was measured
+  NavState predicted;  ///< before it was measured
   PackedSymmetric predicted_covariance;
-  NavState filtered;                     ///< after it; the same where nothing was measured
+  NavState filtered;  ///< after it; the same where nothing was measured
   PackedSymmetric filtered_covariance;
   /// ekf::Phi from the node before, at its filtered state.
   Eigen::MatrixXd motion;

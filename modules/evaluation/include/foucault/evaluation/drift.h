@@ -10,9 +10,9 @@
 #include <optional>
 #include <vector>
 
-#include "foucault/state/result.h"
 #include "foucault/evaluation/outage.h"
 #include "foucault/evaluation/return_error.h"
+#include "foucault/state/result.h"
 
 /// Drift: what the estimate errs by during an outage.
 namespace foucault {

@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "foucault/core/error.h"
-#include "foucault/state/interfaces.h"
 #include "foucault/evaluation/drift_table.h"
 #include "foucault/evaluation/error_track.h"
 #include "foucault/evaluation/outage_run.h"
+#include "foucault/state/interfaces.h"
 
 /// Many recordings x methods x shifted schedules, and what comes out of comparing them.
 namespace foucault {

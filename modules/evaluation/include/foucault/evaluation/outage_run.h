@@ -4,10 +4,10 @@
 #include <memory>
 #include <vector>
 
-#include "foucault/state/interfaces.h"
 #include "foucault/evaluation/drift.h"
 #include "foucault/evaluation/outage.h"
 #include "foucault/evaluation/reference_error.h"
+#include "foucault/state/interfaces.h"
 
 namespace foucault {
 

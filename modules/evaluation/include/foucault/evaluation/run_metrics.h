@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "foucault/state/interfaces.h"
-#include "foucault/state/result.h"
 #include "foucault/evaluation/consistency.h"
 #include "foucault/evaluation/trust.h"
+#include "foucault/state/interfaces.h"
+#include "foucault/state/result.h"
 
 namespace foucault {
 

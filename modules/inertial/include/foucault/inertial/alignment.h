@@ -5,9 +5,9 @@
 #include <string>
 
 #include "foucault/core/config.h"
+#include "foucault/inertial/imu_noise.h"
 #include "foucault/state/interfaces.h"
 #include "foucault/state/result.h"
-#include "foucault/inertial/imu_noise.h"
 
 namespace foucault {
 

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "foucault/state/interfaces.h"
-#include "foucault/state/result.h"
 #include "foucault/inertial/imu_noise.h"
 #include "foucault/inertial/turn_match.h"
+#include "foucault/state/interfaces.h"
+#include "foucault/state/result.h"
 
 /// Judges a recording before it is processed.
 namespace foucault {

@@ -9,10 +9,10 @@
 #include <variant>
 
 #include "foucault/core/config.h"
-#include "foucault/state/interfaces.h"
 #include "foucault/inertial/alignment.h"
 #include "foucault/inertial/navigator.h"
 #include "foucault/inertial/recent_rates.h"
+#include "foucault/state/interfaces.h"
 
 namespace foucault {
 
@@ -220,7 +220,7 @@ class NavigationRun : public Estimator {
   std::optional<GnssFix> last_fix_seen_;
   std::optional<Epoch> before_hole_;  ///< the last state, while aligning anew
   UsualInterval usual_interval_;
-  RecentRates recent_;                  ///< before now, for bridging a hole
+  RecentRates recent_;  ///< before now, for bridging a hole
   std::deque<Measurement> held_;
   std::multimap<int64_t, Event> pending_;  ///< by stamp
   std::unique_ptr<ImuHole> hole_;          ///< met but not yet bridged

@@ -5,8 +5,8 @@
 #include <variant>
 #include <vector>
 
-#include "foucault/state/interfaces.h"
 #include "foucault/inertial/navigation_run.h"
+#include "foucault/state/interfaces.h"
 
 /// What smoothers share: a forward run that leaves nodes, and afterwards every epoch from all
 /// fixes.
@@ -90,7 +90,8 @@ class Smoother : public Estimator {
     Recording& recording_;
     EpochRate rate_;
     Sink& sink_;
-    std::deque<std::variant<NodeEpoch, BetweenEpoch, NodeFix, FixResult, ObservationResult, Notice>> kept_;
+    std::deque<std::variant<NodeEpoch, BetweenEpoch, NodeFix, FixResult, ObservationResult, Notice>>
+        kept_;
   };
 
   Keeper keeper_;

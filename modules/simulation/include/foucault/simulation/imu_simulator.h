@@ -4,11 +4,11 @@
 #include <Eigen/Geometry>
 
 #include "foucault/core/measurement.h"
-#include "foucault/state/blocks.h"
 #include "foucault/inertial/imu_noise.h"
 #include "foucault/inertial/increments.h"
 #include "foucault/simulation/random.h"
 #include "foucault/simulation/trajectory.h"
+#include "foucault/state/blocks.h"
 
 namespace foucault {
 

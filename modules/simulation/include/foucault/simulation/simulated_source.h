@@ -2,12 +2,12 @@
 
 #include <optional>
 
-#include "foucault/state/interfaces.h"
-#include "foucault/state/result.h"
 #include "foucault/inertial/imu_noise.h"
 #include "foucault/simulation/gnss_simulator.h"
 #include "foucault/simulation/imu_simulator.h"
 #include "foucault/simulation/scenario.h"
+#include "foucault/state/interfaces.h"
+#include "foucault/state/result.h"
 
 namespace foucault {
 

@@ -10,9 +10,9 @@ namespace foucault {
 /// Section `calibrate` of the configuration: which slow blocks are estimated.
 class CalibrateOptions : public Configurable {
  public:
-  std::string mode = "auto";         ///< auto: as below | none: nothing beside the biases
-  std::string gyro_scale = "off";    ///< on | off
-  std::string accel_scale = "off";   ///< on | off
+  std::string mode = "auto";        ///< auto: as below | none: nothing beside the biases
+  std::string gyro_scale = "off";   ///< on | off
+  std::string accel_scale = "off";  ///< on | off
   double gyro_scale_sigma_ppm = 1000;
   double accel_scale_sigma_ppm = 1000;
   /// Scale factors of a recording are those of the sensor and its temperature. Shorter ones leave

@@ -22,8 +22,8 @@ struct FixResult {
   FixVerdict verdict = FixVerdict::used;
   FixQuality quality = FixQuality::unknown;
   Geodetic antenna;
-  Eigen::Vector3d p_b_a = Eigen::Vector3d::Zero();  ///< lever arm, IMU to antenna, in b [m]
-  Eigen::Vector3d innovation_n = Eigen::Vector3d::Zero();           ///< north, east, down [m]
+  Eigen::Vector3d p_b_a = Eigen::Vector3d::Zero();         ///< lever arm, IMU to antenna, in b [m]
+  Eigen::Vector3d innovation_n = Eigen::Vector3d::Zero();  ///< north, east, down [m]
   Eigen::Matrix3d innovation_covariance = Eigen::Matrix3d::Zero();  ///< [m^2], of the innovation
   Eigen::Vector3d postfit_n = Eigen::Vector3d::Zero();  ///< fix minus estimate after use [m]
 };

@@ -3,9 +3,9 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include "foucault/core/so3.h"
 #include "foucault/state/interfaces.h"
 #include "foucault/state/result.h"
-#include "foucault/core/so3.h"
 
 namespace foucault {
 
