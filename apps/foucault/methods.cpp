@@ -29,7 +29,7 @@ NavigationRunOptions run_options(const Settings& settings) {
 
 std::unique_ptr<Estimator> drive(std::unique_ptr<Navigator> navigator, const Settings& settings,
                                  const Mounting& mounting, Sink& sink) {
-  Aligner aligner(settings.alignment, settings.imu.noise(), mounting);
+  Aligner aligner(settings.alignment, settings.imu.noise(), mounting, settings.calibrate.layout());
   return std::make_unique<NavigationRun>(std::move(navigator), std::move(aligner),
                                          run_options(settings), sink);
 }
@@ -57,7 +57,7 @@ std::unique_ptr<Estimator> make_ekf(const Settings& settings, const Mounting& mo
 
 std::unique_ptr<Estimator> make_rts(const Settings& settings, const Mounting& mounting,
                                     Sink& sink) {
-  Aligner aligner(settings.alignment, settings.imu.noise(), mounting);
+  Aligner aligner(settings.alignment, settings.imu.noise(), mounting, settings.calibrate.layout());
   return make_rts_smoother(settings.imu.noise(), settings.calibrate.layout(), settings.ekf,
                            std::move(aligner), run_options(settings), sink);
 }
@@ -73,7 +73,7 @@ std::unique_ptr<Navigator> first_estimate(const Settings& settings) {
 
 std::unique_ptr<Estimator> make_batch(const Settings& settings, const Mounting& mounting,
                                       Sink& sink) {
-  Aligner aligner(settings.alignment, settings.imu.noise(), mounting);
+  Aligner aligner(settings.alignment, settings.imu.noise(), mounting, settings.calibrate.layout());
   return make_batch_smoother(first_estimate(settings), settings.fgo,
                              settings.batch.preintegration_model(), settings.imu.noise(),
                              std::move(aligner), run_options(settings), sink,

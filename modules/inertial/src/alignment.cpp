@@ -102,9 +102,11 @@ void AlignmentOptions::fields(ConfigFields& f) {
 
 class Aligner::Impl {
  public:
-  Impl(const AlignmentOptions& options, const ImuNoise& noise, const Mounting& mounting)
+  Impl(const AlignmentOptions& options, const ImuNoise& noise, const Mounting& mounting,
+       const Layout& layout)
       : options_(options),
         noise_(noise),
+        layout_(layout),
         q_v_b_(mounting.q_v_b.normalized()),
         given_(given_angles(options)),
         rest_(options.min_rest_s, options.max_rest_s),
@@ -117,7 +119,7 @@ class Aligner::Impl {
 
   void add(const GnssFix& fix);
   void add(const ImuIncrement& increment);
-  void restart() { *this = Impl(options_, noise_, Mounting{q_v_b_}); }
+  void restart() { *this = Impl(options_, noise_, Mounting{q_v_b_}, layout_); }
   int64_t earliest_start_ns() const;
   std::string why_not() const;
 
@@ -137,6 +139,7 @@ class Aligner::Impl {
 
   AlignmentOptions options_;
   ImuNoise noise_;
+  Layout layout_;
   Quaterniond q_v_b_;
   GivenAngles given_;
 
@@ -177,7 +180,7 @@ void Aligner::Impl::add(const GnssFix& fix) {
     const std::optional<HeadingOffset> heading = courses_.add(fix, carried_.attitude());
     if (heading) start_at_rest(*heading, carried_.drift_variance());
   } else if (const std::optional<AlignmentFindings> findings = moving_.add(fix)) {
-    accept_moving(with_given_angles(initial_state(*findings, noise_), q_v_b_, given_));
+    accept_moving(with_given_angles(initial_state(*findings, noise_, layout_), q_v_b_, given_));
   }
 }
 
@@ -280,7 +283,7 @@ void Aligner::Impl::start_at_rest(const HeadingOffset& heading, double drift_var
   findings.gyro_covariance = (kReuse * means.gyro_variance.cwiseMax(gyro_white)).asDiagonal();
   findings.heading = heading.offset;
   findings.heading_variance = kReuse * heading.variance + drift_variance;
-  const Epoch epoch = with_given_angles(initial_state(findings, noise_), q_v_b_, given_);
+  const Epoch epoch = with_given_angles(initial_state(findings, noise_, layout_), q_v_b_, given_);
   const std::string source =
       given_.heading ? std::string("heading given")
                      : fmt::format("heading from {} courses up to {:.1f} s later", heading.courses,
@@ -363,8 +366,9 @@ std::string Aligner::Impl::why_not() const {
   return head + why + remedy;
 }
 
-Aligner::Aligner(const AlignmentOptions& options, const ImuNoise& noise, const Mounting& mounting)
-    : impl_(std::make_unique<Impl>(options, noise, mounting)) {}
+Aligner::Aligner(const AlignmentOptions& options, const ImuNoise& noise, const Mounting& mounting,
+                 const Layout& layout)
+    : impl_(std::make_unique<Impl>(options, noise, mounting, layout)) {}
 Aligner::~Aligner() = default;
 Aligner::Aligner(Aligner&&) noexcept = default;
 Aligner& Aligner::operator=(Aligner&&) noexcept = default;

@@ -31,12 +31,12 @@ double prior_sigma(double turn_on_sigma, double bias_sigma) {
   return std::hypot(turn_on_sigma, bias_sigma);
 }
 
-void update(Epoch& epoch, const NodeRow& H, double innovation, double variance) {
-  Linearized z(1, static_cast<int>(H.size()));
+/// A scalar that is to be given columns.
+Linearized scalar(const Epoch& epoch, double innovation, double variance) {
+  Linearized z(1, static_cast<int>(epoch.covariance.cols()));
   z.r[0] = innovation;
-  z.H = H;
   z.R(0, 0) = variance;
-  kalman_update(z, epoch, epoch.covariance);
+  return z;
 }
 
 /// A measured gyroscope bias together with what was known before; unless the two contradict each
@@ -46,40 +46,51 @@ void fuse_gyro_prior(Epoch& epoch, double sigma) {
   const Matrix3d sum = epoch.covariance_of(gyro_bias) + prior;
   if (epoch.bias.gyro.dot(sum.ldlt().solve(epoch.bias.gyro)) > kContradiction) return;
   for (int axis = 0; axis < 3; ++axis) {
-    NodeRow H = NodeRow::Zero();
-    part(H, gyro_bias)[axis] = 1;
-    update(epoch, H, -epoch.bias.gyro[axis], sigma * sigma);
+    Linearized z = scalar(epoch, -epoch.bias.gyro[axis], sigma * sigma);
+    columns_of(z.H, gyro_bias)(0, axis) = 1;
+    kalman_update(z, epoch, epoch.covariance);
   }
 }
 
-/// The length of the specific force against the one expected: the bias along it.
-void fuse_force_length(Epoch& epoch, const AlignmentFindings& findings) {
-  const Vector3d along_b = findings.specific_force_b.normalized();
+/// The length of the specific force against the one expected: bias and scale along it.
+void fuse_force_length(Epoch& epoch, const AlignmentFindings& findings, const Layout& layout) {
+  const Vector3d& f_b = findings.specific_force_b;
+  const Vector3d along_b = f_b.normalized();
   const Vector3d expected_n = specific_force_n(findings);
   const Vector3d along_n = expected_n.normalized();
-  const double excess = findings.specific_force_b.norm() - expected_n.norm();
-  NodeRow H = NodeRow::Zero();
-  part(H, accel_bias) = along_b;
   const double variance = along_b.dot(findings.specific_force_covariance * along_b) +
                           along_n.dot(findings.motion_covariance.block<3, 3>(3, 3) * along_n) +
                           kGravitySigma * kGravitySigma;
-  update(epoch, H, excess, variance);
+  Linearized z = scalar(epoch, f_b.norm() - expected_n.norm(), variance);
+  columns_of(z.H, accel_bias) = along_b.transpose();
+  if (const SlowBlock* scale = layout.find(accel_scale))
+    columns_of(z.H, *scale) = expected_n.norm() * along_b.cwiseAbs2().transpose();
+  kalman_update(z, epoch, epoch.covariance);
+}
+
+/// 0 if they are taken as right.
+double accel_scale_sigma(const Layout& layout) {
+  const SlowBlock* scale = layout.find(accel_scale);
+  return scale ? scale->sigma : 0;
 }
 
 /// The prior of the accelerometer bias; wider if one axis shows it to be too narrow.
-double accel_prior_sigma(const AlignmentFindings& findings, const ImuNoise& noise) {
-  const double excess = findings.specific_force_b.norm() - specific_force_n(findings).norm();
+double accel_prior_sigma(const AlignmentFindings& findings, const ImuNoise& noise,
+                         const Layout& layout) {
+  const double expected = specific_force_n(findings).norm();
+  const double excess = findings.specific_force_b.norm() - expected;
   const double uncertain = std::sqrt(findings.motion_covariance.block<3, 3>(3, 3).trace() +
-                                     findings.specific_force_covariance.trace());
+                                     findings.specific_force_covariance.trace() +
+                                     std::pow(accel_scale_sigma(layout) * expected, 2));
   const double sigma = prior_sigma(noise.accel_turn_on_sigma, noise.accel_bias_sigma);
   return std::max(sigma, (std::abs(excess) - 3 * uncertain) / 3);
 }
 
 /// Independent errors in, state errors out: P = J S J^T, block by block.
-NodeMatrix covariance_of(const AlignmentFindings& findings, const Quaterniond& q_n_b,
-                         double accel_bias_sigma) {
+StateMatrix covariance_of(const AlignmentFindings& findings, const Quaterniond& q_n_b,
+                          double accel_bias_sigma, const Layout& layout) {
   constexpr int kFix = 0, kMotion = 3, kForce = 9, kBias = 12, kHeading = 15, kGyro = 16;
-  constexpr int kSources = 19;
+  constexpr int kScale = 19, kSources = 22;
   using Jacobian = Eigen::Matrix<double, 3, kSources>;
   Eigen::Matrix<double, kSources, kSources> S = Eigen::Matrix<double, kSources, kSources>::Zero();
   S.block<3, 3>(kFix, kFix) = findings.fix.position_covariance;
@@ -88,6 +99,7 @@ NodeMatrix covariance_of(const AlignmentFindings& findings, const Quaterniond& q
   S.block<3, 3>(kBias, kBias) = accel_bias_sigma * accel_bias_sigma * Matrix3d::Identity();
   S(kHeading, kHeading) = findings.heading_variance;
   S.block<3, 3>(kGyro, kGyro) = findings.gyro_covariance;
+  S.diagonal().segment<3>(kScale).setConstant(std::pow(accel_scale_sigma(layout), 2));
 
   const Matrix3d R = q_n_b.toRotationMatrix();
   const Vector3d f = R.transpose() * specific_force_n(findings);
@@ -100,6 +112,7 @@ NodeMatrix covariance_of(const AlignmentFindings& findings, const Quaterniond& q
   Jacobian by_attitude = Jacobian::Zero();
   by_attitude.block<3, 3>(0, kBias) = keep_heading * level;
   by_attitude.block<3, 3>(0, kForce) = keep_heading * level;
+  by_attitude.block<3, 3>(0, kScale) = keep_heading * level * f.asDiagonal();
   by_attitude.block<3, 3>(0, kMotion + 3) = keep_heading * level * R.transpose();
   by_attitude.block<3, 3>(0, kMotion) = about * findings.heading_by_velocity.transpose();
   by_attitude.col(kHeading) = about;
@@ -115,13 +128,18 @@ NodeMatrix covariance_of(const AlignmentFindings& findings, const Quaterniond& q
   Jacobian by_velocity = R * so3::skew(findings.omega_b.cross(lever)) * by_attitude;
   by_velocity.block<3, 3>(0, kMotion) += Matrix3d::Identity();
 
-  NodeBy<kSources> J = NodeBy<kSources>::Zero();
+  StateByColumns<kSources> J = StateByColumns<kSources>::Zero(layout.size(), kSources);
   rows_of(J, position) = by_position;
   rows_of(J, velocity) = by_velocity;
   rows_of(J, attitude) = by_attitude;
   rows_of(J, gyro_bias) = by_gyro_bias;
   rows_of(J, accel_bias).middleCols<3>(kBias).setIdentity();
-  return J * S * J.transpose();
+  if (const SlowBlock* scale = layout.find(accel_scale))
+    columns_of(J.transpose(), *scale).middleRows<3>(kScale).setIdentity();
+  StateMatrix P = J * S * J.transpose();
+  for (const SlowBlock& slow : layout.slow())
+    part(P.diagonal(), slow).setConstant(slow.sigma * slow.sigma);
+  return P;
 }
 
 void place_at_imu(Epoch& epoch, const GnssFix& fix, const Vector3d& antenna_velocity_n,
@@ -154,16 +172,19 @@ Quaterniond attitude_of(const AlignmentFindings& findings) {
   return q.normalized();
 }
 
-Epoch initial_state(const AlignmentFindings& findings, const ImuNoise& noise) {
+Epoch initial_state(const AlignmentFindings& findings, const ImuNoise& noise,
+                    const Layout& layout) {
   Epoch epoch;
+  epoch.slow = SlowVector::Zero(layout.slow_size());
   epoch.q_n_b = attitude_of(findings);
   place_at_imu(epoch, findings.fix, findings.antenna_velocity_n, findings.omega_b);
   epoch.bias.gyro =
       findings.gyro_b - epoch.q_n_b.conjugate() *
                             (wgs84::earth_rate_n(findings.fix.antenna.latitude) + findings.turn_n);
-  epoch.covariance = covariance_of(findings, epoch.q_n_b, accel_prior_sigma(findings, noise));
+  epoch.covariance =
+      covariance_of(findings, epoch.q_n_b, accel_prior_sigma(findings, noise, layout), layout);
   fuse_gyro_prior(epoch, prior_sigma(noise.gyro_turn_on_sigma, noise.gyro_bias_sigma));
-  fuse_force_length(epoch, findings);
+  fuse_force_length(epoch, findings, layout);
   return epoch;
 }
 
@@ -187,7 +208,9 @@ Epoch with_given_angles(const Epoch& epoch, const Quaterniond& q_v_b, const Give
   result.q_n_b = so3::from_euler(euler) * q_v_b;
   NodeMatrix T = NodeMatrix::Identity();
   part(T, attitude, attitude) = b_by_euler * keep.asDiagonal() * euler_by_b;
-  result.covariance = T * node_part(epoch.covariance) * T.transpose();
+  node_part(result.covariance) = T * node_part(epoch.covariance) * T.transpose();
+  node_by_slow(result.covariance) = T * node_by_slow(epoch.covariance);
+  slow_by_node(result.covariance) = node_by_slow(result.covariance).transpose();
   part(result.covariance, attitude, attitude) +=
       b_by_euler * variance.asDiagonal() * b_by_euler.transpose();
   return result;

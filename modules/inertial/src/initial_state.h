@@ -47,7 +47,10 @@ Eigen::Quaterniond attitude_of(const AlignmentFindings& findings);
 ///   gyro bias: gyro_b - R^T (omega_ie + turn), so db = -[w_b x] dtheta - n
 ///   position, velocity: lever arm turned by dtheta
 /// and then the priors of the biases; the length of f tells the accelerometer's bias along it.
-Epoch initial_state(const AlignmentFindings& findings, const ImuNoise& noise);
+/// Scale factors of the accelerometers, if `layout` has them, share in level and length of f: what
+/// the length tells is bias and scale together.
+Epoch initial_state(const AlignmentFindings& findings, const ImuNoise& noise,
+                    const Layout& layout = {});
 
 /// A given angle in the place of the one found.
 struct GivenAngle {

@@ -5,8 +5,10 @@
 namespace foucault {
 namespace {
 
-/// The slow blocks as they were, so uncertain that the update decides about them.
+/// The slow blocks as they were, so uncertain that the update decides about them; unless the
+/// alignment has some, correlated with the rest.
 Epoch with_slow_blocks_of(const Epoch& earlier, const Epoch& aligned) {
+  if (aligned.slow.size() == earlier.slow.size()) return aligned;
   constexpr double kVague = 1e4;
   const Eigen::Index size = state_size(earlier.slow.size());
   Epoch out = aligned;

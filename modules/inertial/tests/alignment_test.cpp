@@ -38,11 +38,16 @@ struct Outcome {
 };
 
 Outcome align(const DriveSimulator& simulator, const Sensors& sensors, const ImuNoise& noise,
-              const AlignmentOptions& options = {}) {
-  Aligner aligner(options, noise, Mounting{sensors.q_v_b});
+              const AlignmentOptions& options = {}, const Layout& layout = {},
+              const Vector3d& accel_scale = Vector3d::Zero()) {
+  Aligner aligner(options, noise, Mounting{sensors.q_v_b}, layout);
   for (const Measurement& m : simulator.stream()) {
     if (const auto* fix = std::get_if<GnssFix>(&m)) aligner.add(*fix);
-    if (const auto* increment = std::get_if<ImuIncrement>(&m)) aligner.add(*increment);
+    if (const auto* increment = std::get_if<ImuIncrement>(&m)) {
+      ImuIncrement scaled = *increment;
+      scaled.dvel_b.array() *= 1 + accel_scale.array();
+      aligner.add(scaled);
+    }
     if (aligner.initial()) return {aligner.initial(), stamp(m), ""};
   }
   return {std::nullopt, 0, aligner.why_not()};
@@ -194,7 +199,7 @@ TEST(AlignmentAtRest, LevelErrorAndAccelerometerBiasAreTied) {
   const double g = 9.81;
   const Vector3d up_b = outcome.initial->q_n_b.conjugate() * Vector3d(0, 0, -1);
   for (const Vector3d& axis : {Vector3d(1, 0, 0), Vector3d(0, 1, 0)}) {
-    Eigen::Matrix<double, 1, 15> H = Eigen::Matrix<double, 1, 15>::Zero();
+    NodeRow H = NodeRow::Zero();
     part(H, block::attitude) = g * axis.cross(up_b);  // of up x dtheta
     part(H, accel_bias) = axis;
     const double tied = std::sqrt((H * P * H.transpose())(0, 0));
@@ -202,6 +207,32 @@ TEST(AlignmentAtRest, LevelErrorAndAccelerometerBiasAreTied) {
     EXPECT_LT(tied, 0.05 * bias);
     EXPECT_NEAR(bias, 0.015, 0.001);
   }
+}
+
+/// Gravity tells the sum of bias and scale along it, and which of them it is nobody knows.
+TEST(AlignmentAtRest, ScaleFactorsAreNotTakenForBiases) {
+  constexpr double kScale = 0.02, kSigma = 0.015;
+  const Sensors sensors = industrial_sensors();
+  const DriveSimulator simulator(rest_and_drive(20, 0.3), sensors);
+  const Layout layout = Layout().add(block::gyro_scale, 1e-3).add(block::accel_scale, 0.02);
+  const Outcome outcome = align(simulator, sensors, noise_of(sensors, 1e-4, kSigma), {}, layout,
+                                Vector3d::Constant(kScale));
+  ASSERT_TRUE(outcome.initial) << outcome.why_not;
+  const Epoch& epoch = *outcome.initial;
+  const SlowBlock& scale = *layout.find(block::accel_scale);
+  const double g = 9.81;
+  StateVector sum = StateVector::Zero(layout.size());
+  part(sum, accel_bias).z() = 1;
+  part(sum, scale).z() = -g;
+  const double error =
+      sensors.bias.accel.z() - epoch.bias.accel.z() - g * (kScale - epoch.slow[scale.index + 2]);
+  const double tied = std::sqrt(sum.dot(epoch.covariance * sum));
+  EXPECT_LT(tied, 2e-3);
+  EXPECT_LT(std::abs(error), 3.3 * tied);
+  const double alone = std::sqrt(part(epoch.covariance.diagonal(), scale).z());
+  EXPECT_LT(std::abs(kScale - epoch.slow[scale.index + 2]), 3 * alone);
+  EXPECT_GT(alone, 1e-3);
+  EXPECT_NEAR(std::sqrt(part(epoch.covariance.diagonal(), layout.slow()[0])[0]), 1e-3, 1e-9);
 }
 
 Drive drive_without_rest(double heading) {

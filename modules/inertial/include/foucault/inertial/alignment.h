@@ -43,7 +43,9 @@ class AlignmentOptions : public Configurable {
 class Aligner {
  public:
   /// Throws UsageError if mode `given` lacks an angle.
-  Aligner(const AlignmentOptions& options, const ImuNoise& noise, const Mounting& mounting);
+  /// `layout`: what is estimated, as far as the alignment has to do with it.
+  Aligner(const AlignmentOptions& options, const ImuNoise& noise, const Mounting& mounting,
+          const Layout& layout = {});
   ~Aligner();
   Aligner(Aligner&&) noexcept;
   Aligner& operator=(Aligner&&) noexcept;
