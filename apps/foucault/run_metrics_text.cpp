@@ -133,7 +133,7 @@ Json consistency_json(const Consistency& c) {
   return json;
 }
 
-Json aids_json(const std::map<std::string, AidMetrics>& aids) {
+Json aids_json(const Aids& aids) {
   Json json = Json::object();
   for (const auto& [name, aid] : aids) {
     json[name] = {{"used", aid.used},
@@ -223,7 +223,7 @@ reports::Table reference_table(const ReferenceMetrics& r) {
   return table;
 }
 
-reports::Table aids_table(const std::map<std::string, AidMetrics>& aids) {
+reports::Table aids_table(const Aids& aids) {
   reports::Table table;
   table.title = "Other measurements";
   table.note =

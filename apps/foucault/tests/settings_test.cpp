@@ -25,6 +25,22 @@ TEST(Settings, HelpKnowsEverySection) {
   }
 }
 
+TEST(Settings, KeysThatWereReplacedNameTheNewOnes) {
+  const std::pair<const char*, const char*> replaced[] = {
+      {"ekf.scale_factors=true", "calibrate.gyro_scale"},
+      {"ekf.use_velocity=true", "aids.gnss_velocity"},
+      {"rawlog.gnss_velocity=false", "aids.gnss_velocity"}};
+  for (const auto& [old, now] : replaced) {
+    Settings settings;
+    try {
+      set_config(old, settings);
+      ADD_FAILURE() << old;
+    } catch (const UsageError& error) {
+      EXPECT_NE(std::string(error.what()).find(now), std::string::npos) << error.what();
+    }
+  }
+}
+
 TEST(Settings, SimulationReadsBackToo) {
   SimulationSettings settings;
   settings.scenario.seed = 99;

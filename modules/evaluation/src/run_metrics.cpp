@@ -117,6 +117,7 @@ void RunMetricsCollector::add_rejected(const FixResult& fix) {
 
 void RunMetricsCollector::observation(const ObservationResult& result) {
   AidMetrics& aid = aids_[std::string(result.name)];
+  aid.dimension = result.dimension;
   ++(result.used ? aid.used : aid.rejected);
   if (result.used) aid.nis_sum += result.normalized_square;
 }
@@ -188,7 +189,7 @@ RunMetrics RunMetricsCollector::metrics() const {
   if (m.gnss.rejected_samples > 0) {
     m.gnss.rejected_mean_nis = rejected_nis_sum_ / static_cast<double>(m.gnss.rejected_samples);
   }
-  m.trust = trust_in(m.consistency, states_);
+  m.trust = trust_in(m.consistency, states_, aids_);
   if (position_.squares.samples > 0) m.reference = reference_metrics(m.consistency);
   return m;
 }

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "foucault/core/time.h"
 #include "foucault/evaluation/statistics.h"
@@ -111,6 +112,16 @@ std::optional<Finding> on_stretches(const StretchConsistency& s, int64_t start_n
                              seconds_between(start_ns, s.worst_end_ns))};
 }
 
+std::optional<Finding> on_aid(const std::string& name, const AidMetrics& aid) {
+  if (aid.used < kFewestFixes) return std::nullopt;
+  const double size = std::sqrt(aid.mean_nis() / aid.dimension);
+  if (size <= kUsual.high) return std::nullopt;
+  return Finding{size > kBelievable.high,
+                 fmt::format("innovations of {0} are {1:.1f} times as large as their sigmas; give "
+                             "larger ones (aids.{0}_sigma_m_s), or do without (aids.{0}=off)",
+                             name, size)};
+}
+
 }  // namespace
 
 bool is_finite(const Epoch& epoch) {
@@ -120,12 +131,14 @@ bool is_finite(const Epoch& epoch) {
          epoch.bias.accel.allFinite() && epoch.covariance.allFinite();
 }
 
-Trust trust_in(const Consistency& consistency, const StateCount& states) {
+Trust trust_in(const Consistency& consistency, const StateCount& states, const Aids& aids) {
   Trust trust;
   std::vector<std::string> remarks;
-  for (const std::optional<Finding>& finding :
-       {on_states(states), on_count(consistency.nis), on_size(consistency, states.begin_ns),
-        on_stretches(consistency.stretches, states.begin_ns)}) {
+  std::vector<std::optional<Finding>> findings{
+      on_states(states), on_count(consistency.nis), on_size(consistency, states.begin_ns),
+      on_stretches(consistency.stretches, states.begin_ns)};
+  for (const auto& [name, aid] : aids) findings.push_back(on_aid(name, aid));
+  for (const std::optional<Finding>& finding : findings) {
     if (!finding) continue;
     if (finding->condemns) trust.trustworthy = false;
     (finding->condemns ? trust.reasons : remarks).push_back(finding->text);

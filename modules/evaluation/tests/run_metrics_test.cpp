@@ -179,6 +179,48 @@ TEST(RunMetrics, AttitudeNeesIsThreeForErrorsOfTheirCovariance) {
   }
 }
 
+TEST(RunMetrics, AidsAreCountedAndJudged) {
+  RunMetricsCollector collector{Mounting()};
+  for (int i = 0; i < 20; ++i) {
+    collector.observation({nanoseconds(i), "gnss_velocity", 3, 12, true});
+    collector.observation({nanoseconds(i), "speed", 1, 16, true});
+    collector.observation({nanoseconds(i), "heading", 1, 1.2, true});
+  }
+  collector.observation({nanoseconds(21.0), "gnss_velocity", 3, 1000, false});
+  const RunMetrics m = collector.metrics();
+  EXPECT_EQ(m.aids.at("gnss_velocity").used, 20);
+  EXPECT_EQ(m.aids.at("gnss_velocity").rejected, 1);
+  EXPECT_EQ(m.aids.at("gnss_velocity").mean_nis(), 12);
+  const std::string reasons = ::testing::PrintToString(m.trust.reasons);
+  EXPECT_NE(reasons.find("of gnss_velocity are 2.0 times"), std::string::npos) << reasons;
+  EXPECT_NE(reasons.find("of speed are 4.0 times"), std::string::npos) << reasons;
+  EXPECT_EQ(reasons.find("heading"), std::string::npos) << reasons;
+}
+
+TEST(Trust, AnAidWithSigmasFarTooSmallCondemns) {
+  Consistency good;
+  good.nis.samples = 100;
+  good.nis.effective_samples = 100;
+  good.nis.mean = 3;
+  const StateCount states{100, 0, 0, 0};
+  EXPECT_TRUE(trust_in(good, states, {{"a", {3, 100, 0, 100 * 12.0}}}).trustworthy);
+  EXPECT_FALSE(trust_in(good, states, {{"a", {3, 100, 0, 100 * 30.0}}}).trustworthy);
+  EXPECT_TRUE(trust_in(good, states, {{"a", {3, 5, 0, 5 * 30.0}}}).trustworthy);
+}
+
+TEST(RunMetrics, SlowBlocksByName) {
+  const Layout layout = Layout().add(block::gyro_scale, 1e-3).add({"other", 1, "m"}, 2);
+  Epoch epoch = with_slow_blocks(epoch_at(1), layout);
+  epoch.slow << 1, 2, 3, 4;
+  const std::vector<CalibratedBlock> blocks = calibrated_blocks(epoch, layout);
+  ASSERT_EQ(blocks.size(), 2u);
+  EXPECT_EQ(blocks[0].block.name, "gyro_scale");
+  EXPECT_EQ(blocks[0].value, (std::vector<double>{1, 2, 3}));
+  EXPECT_DOUBLE_EQ(blocks[0].sigma[2], 1e-3);
+  EXPECT_EQ(blocks[1].value, std::vector<double>{4});
+  EXPECT_DOUBLE_EQ(blocks[1].sigma[0], 2);
+}
+
 TEST(NormalizedSquare, UsesTheWholeCovariance) {
   Eigen::Matrix3d P;
   P << 2, 1, 0, 1, 2, 0, 0, 0, 1;

@@ -52,15 +52,6 @@ struct ReferenceMetrics {
   std::optional<double> position_nees, velocity_nees, attitude_nees;
 };
 
-/// Measurements of one kind beside positions; counts over all.
-struct AidMetrics {
-  int64_t used = 0;
-  int64_t rejected = 0;
-  double nis_sum = 0;  ///< of used ones: innovation squared by its covariance
-  /// Its expectation is the dimension.
-  double mean_nis() const { return used > 0 ? nis_sum / static_cast<double>(used) : 0; }
-};
-
 /// A slow block at the last epoch.
 struct CalibratedBlock {
   Block block;
@@ -69,7 +60,7 @@ struct CalibratedBlock {
 std::vector<CalibratedBlock> calibrated_blocks(const Epoch& epoch, const Layout& layout);
 
 struct RunMetrics {
-  std::map<std::string, AidMetrics> aids;
+  Aids aids;
   int64_t epochs = 0;
   double duration_s = 0;  ///< from the first to the last epoch
   GnssMetrics gnss;
@@ -131,7 +122,7 @@ class RunMetricsCollector : public Sink {
   Squares postfit_;
   Squares rejected_innovation_;
   double rejected_nis_sum_ = 0;
-  std::map<std::string, AidMetrics> aids_;
+  Aids aids_;
   Errors position_;
   Errors velocity_;
   Errors attitude_;

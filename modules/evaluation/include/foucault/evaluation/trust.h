@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
+#include <string>
 
 #include "foucault/core/consistency.h"
 #include "foucault/state/result.h"
@@ -17,6 +19,17 @@ struct StateCount {
   int64_t first_not_finite_ns = 0;
 };
 
+/// Measurements of one kind beside positions.
+struct AidMetrics {
+  int dimension = 0;
+  int64_t used = 0;
+  int64_t rejected = 0;
+  double nis_sum = 0;  ///< of used ones: innovation squared by its covariance
+  /// Its expectation is the dimension.
+  double mean_nis() const { return used > 0 ? nis_sum / static_cast<double>(used) : 0; }
+};
+using Aids = std::map<std::string, AidMetrics>;  ///< by name
+
 /// Every number of it, covariance included.
 bool is_finite(const Epoch& epoch);
 
@@ -25,8 +38,9 @@ bool is_finite(const Epoch& epoch);
 /// - Condemned: a size above 3, also of the horizontal components alone, or below 0.3; a state that
 /// is not finite; fewer than ten used fixes.
 /// - Named: a size above 1.5 or below 0.5; a stretch above 3.
+/// - An aid of which ten and more were used by the same bounds upwards.
 /// A size counts only if the mean is outside the band in which that of as many independent
 /// innovations as these are worth lies with 99.9 %.
-Trust trust_in(const Consistency& consistency, const StateCount& states);
+Trust trust_in(const Consistency& consistency, const StateCount& states, const Aids& aids = {});
 
 }  // namespace foucault
