@@ -15,9 +15,9 @@ class CalibrateOptions : public Configurable {
   std::string accel_scale = "off";  ///< on | off
   double gyro_scale_sigma_ppm = 1000;
   double accel_scale_sigma_ppm = 1000;
-  /// Scale factors of a recording are those of the sensor and its temperature. Shorter ones leave
-  /// the vertical free: with an hour it drifts 2.5 times as far in 60 s.
-  double scale_tau_s = 864000;
+  /// By default a constant, as in a graph. What wanders leaves the vertical free: with ten days it
+  /// drifts 1.3 times, with an hour 5 times as far in 60 s.
+  double scale_tau_s = 1e9;
 
   void fields(ConfigFields& f) override;
   Layout layout() const;
