@@ -7,10 +7,10 @@
 
 #include "foucault/core/error.h"
 #include "foucault/ekf/ekf.h"
-#include "foucault/ekf/rts_smoother.h"
+#include "foucault/ekf/rts.h"
 #include "foucault/fgo/batch.h"
 #include "foucault/fgo/window_navigator.h"
-#include "foucault/inertial/navigation_run.h"
+#include "foucault/navigation/smoother.h"
 
 namespace foucault::app {
 namespace {
@@ -58,8 +58,9 @@ std::unique_ptr<Estimator> make_ekf(const Settings& settings, const Mounting& mo
 std::unique_ptr<Estimator> make_rts(const Settings& settings, const Mounting& mounting,
                                     Sink& sink) {
   Aligner aligner(settings.alignment, settings.imu.noise(), mounting, settings.calibrate.layout());
-  return make_rts_smoother(settings.imu.noise(), settings.calibrate.layout(), settings.ekf,
-                           std::move(aligner), run_options(settings), sink);
+  return make_smoother(std::make_unique<RtsRecorder>(settings.imu.noise(),
+                                                     settings.calibrate.layout(), settings.ekf),
+                       std::move(aligner), run_options(settings), sink);
 }
 
 /// The forward run of a batch.
@@ -74,10 +75,11 @@ std::unique_ptr<Navigator> first_estimate(const Settings& settings) {
 std::unique_ptr<Estimator> make_batch(const Settings& settings, const Mounting& mounting,
                                       Sink& sink) {
   Aligner aligner(settings.alignment, settings.imu.noise(), mounting, settings.calibrate.layout());
-  return make_batch_smoother(first_estimate(settings), settings.fgo,
-                             settings.batch.preintegration_model(), settings.imu.noise(),
-                             std::move(aligner), run_options(settings), sink,
-                             settings.calibrate.layout());
+  return make_smoother(
+      std::make_unique<BatchRecorder>(first_estimate(settings), settings.fgo,
+                                      settings.batch.preintegration_model(), settings.imu.noise(),
+                                      settings.calibrate.layout()),
+      std::move(aligner), run_options(settings), sink);
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 
 #include "foucault/core/error.h"
 #include "foucault/core/profile.h"
-#include "foucault/inertial/log_check.h"
+#include "foucault/diagnosis/log_check.h"
 #include "foucault/rawlog/rawlog_source.h"
 #include "foucault/reports/run_report.h"
 #include "methods.h"

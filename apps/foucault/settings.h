@@ -2,14 +2,14 @@
 
 #include <string>
 
+#include "foucault/alignment/alignment.h"
 #include "foucault/core/config.h"
 #include "foucault/ekf/ekf.h"
 #include "foucault/evaluation/outage.h"
 #include "foucault/fgo/batch.h"
 #include "foucault/fgo/fgo_options.h"
-#include "foucault/inertial/alignment.h"
-#include "foucault/inertial/imu_noise.h"
-#include "foucault/inertial/navigation_run.h"
+#include "foucault/imu/imu_noise.h"
+#include "foucault/navigation/navigation_run.h"
 #include "foucault/rawlog/rawlog_source.h"
 #include "foucault/state/calibrate_options.h"
 

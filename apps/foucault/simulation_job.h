@@ -4,7 +4,7 @@
 
 #include "console.h"
 #include "fault_cases.h"
-#include "foucault/inertial/imu_noise.h"
+#include "foucault/imu/imu_noise.h"
 #include "foucault/simulation/scenario.h"
 
 namespace foucault::app {

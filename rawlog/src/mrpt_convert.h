@@ -12,7 +12,7 @@
 #include <string>
 
 #include "foucault/core/measurement.h"
-#include "foucault/inertial/increments.h"
+#include "foucault/imu/increments.h"
 
 /// Between MRPT's values and ours: the one place where stamps change their epoch and frames turn
 /// from forward-left-up to forward-right-down.

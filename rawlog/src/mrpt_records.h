@@ -7,7 +7,7 @@
 #include <optional>
 #include <string_view>
 
-#include "foucault/inertial/increments.h"
+#include "foucault/imu/increments.h"
 #include "inflated_file.h"
 #include "record_cursor.h"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "foucault/inertial/burst_stamps.h"
+#include "foucault/imu/burst_stamps.h"
 #include "mrpt_convert.h"
 #include "rawlog_stream.h"
 

@@ -13,9 +13,9 @@
 #include "foucault/core/error.h"
 #include "foucault/core/position.h"
 #include "foucault/core/time.h"
-#include "foucault/inertial/burst_stamps.h"
-#include "foucault/inertial/increments.h"
-#include "foucault/inertial/time_mismatch.h"
+#include "foucault/core/time_mismatch.h"
+#include "foucault/imu/burst_stamps.h"
+#include "foucault/imu/increments.h"
 #include "mrpt_convert.h"
 #include "rawlog_stream.h"
 

@@ -10,7 +10,7 @@
 #include "dense_preintegrator.h"
 #include "foucault/fgo/imu_interval.h"
 #include "foucault/fgo/preintegration_factor.h"
-#include "foucault/inertial/imu_noise.h"
+#include "foucault/imu/imu_noise.h"
 
 namespace foucault::benchmarks {
 namespace {

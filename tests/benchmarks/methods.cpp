@@ -11,7 +11,8 @@
 #include "foucault/ekf/ekf.h"
 #include "foucault/fgo/batch.h"
 #include "foucault/fgo/window_navigator.h"
-#include "foucault/inertial/navigation_run.h"
+#include "foucault/navigation/navigation_run.h"
+#include "foucault/navigation/smoother.h"
 #include "trip.h"
 
 namespace foucault::benchmarks {
@@ -72,9 +73,11 @@ void batch(benchmark::State& state) {
   EpochCounter counter;
   for ([[maybe_unused]] const auto _ : state) {
     counter.epochs = 0;
-    const std::unique_ptr<Estimator> smoother = make_batch_smoother(
-        std::make_unique<EkfNavigator>(trip.noise, Layout{}, EkfOptions{}), FgoOptions{},
-        PreintegrationModel::full, trip.noise, aligner(trip), NavigationRunOptions{}, counter);
+    const std::unique_ptr<Estimator> smoother =
+        make_smoother(std::make_unique<BatchRecorder>(
+                          std::make_unique<EkfNavigator>(trip.noise, Layout{}, EkfOptions{}),
+                          FgoOptions{}, PreintegrationModel::full, trip.noise),
+                      aligner(trip), NavigationRunOptions{}, counter);
     for (const Measurement& measurement : trip.measurements) smoother->process(measurement);
     Profile profile;
     smoother->finish();

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "foucault/inertial/imu_noise.h"
+#include "foucault/imu/imu_noise.h"
 #include "foucault/state/interfaces.h"
 
 namespace foucault::benchmarks {

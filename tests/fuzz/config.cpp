@@ -1,8 +1,8 @@
 #include "foucault/core/config.h"
 
-#include "foucault/inertial/alignment.h"
-#include "foucault/inertial/imu_noise.h"
-#include "foucault/inertial/navigation_run.h"
+#include "foucault/alignment/alignment.h"
+#include "foucault/imu/imu_noise.h"
+#include "foucault/navigation/navigation_run.h"
 #include "foucault/rawlog/rawlog_source.h"
 #include "fuzzing.h"
 

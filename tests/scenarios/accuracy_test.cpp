@@ -13,7 +13,7 @@
 #include "foucault/evaluation/run_metrics.h"
 #include "foucault/evaluation/statistics.h"
 #include "foucault/fgo/window_navigator.h"
-#include "foucault/inertial/navigation_run.h"
+#include "foucault/navigation/navigation_run.h"
 #include "foucault/simulation/simulated_source.h"
 
 namespace foucault {

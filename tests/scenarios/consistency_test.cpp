@@ -10,14 +10,15 @@
 #include "foucault/core/so3.h"
 #include "foucault/core/time.h"
 #include "foucault/ekf/ekf.h"
-#include "foucault/ekf/rts_smoother.h"
+#include "foucault/ekf/rts.h"
 #include "foucault/evaluation/reference_error.h"
 #include "foucault/evaluation/run_metrics.h"
 #include "foucault/evaluation/statistics.h"
 #include "foucault/fgo/batch.h"
 #include "foucault/fgo/window_navigator.h"
 #include "foucault/geodesy/local_frame.h"
-#include "foucault/inertial/navigation_run.h"
+#include "foucault/navigation/navigation_run.h"
+#include "foucault/navigation/smoother.h"
 #include "foucault/simulation/simulated_source.h"
 
 namespace foucault {
@@ -63,11 +64,13 @@ std::unique_ptr<Estimator> make_estimator(const std::string& method, const ImuNo
                                           const Mounting& mounting, Sink& sink) {
   Aligner aligner(AlignmentOptions{}, noise, mounting);
   if (method == "rts")
-    return make_rts_smoother(noise, Layout{}, EkfOptions{}, std::move(aligner), options, sink);
+    return make_smoother(std::make_unique<RtsRecorder>(noise, Layout{}, EkfOptions{}),
+                         std::move(aligner), options, sink);
   auto ekf = std::make_unique<EkfNavigator>(noise, Layout{}, EkfOptions{});
   if (method == "batch")
-    return make_batch_smoother(std::move(ekf), FgoOptions{}, PreintegrationModel::full, noise,
-                               std::move(aligner), options, sink);
+    return make_smoother(std::make_unique<BatchRecorder>(std::move(ekf), FgoOptions{},
+                                                         PreintegrationModel::full, noise),
+                         std::move(aligner), options, sink);
   std::unique_ptr<Navigator> navigator = std::move(ekf);
   if (method == "full" || method == "refined") {
     const PreintegrationModel model =

@@ -17,7 +17,7 @@
 #include "foucault/evaluation/statistics.h"
 #include "foucault/fgo/window_navigator.h"
 #include "foucault/geodesy/local_frame.h"
-#include "foucault/inertial/navigation_run.h"
+#include "foucault/navigation/navigation_run.h"
 #include "foucault/simulation/simulated_source.h"
 
 namespace foucault {

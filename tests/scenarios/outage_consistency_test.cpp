@@ -11,10 +11,11 @@
 #include <vector>
 
 #include "foucault/ekf/ekf.h"
-#include "foucault/ekf/rts_smoother.h"
+#include "foucault/ekf/rts.h"
 #include "foucault/evaluation/outage_run.h"
 #include "foucault/evaluation/statistics.h"
-#include "foucault/inertial/navigation_run.h"
+#include "foucault/navigation/navigation_run.h"
+#include "foucault/navigation/smoother.h"
 #include "foucault/simulation/simulated_source.h"
 
 namespace foucault {
@@ -26,7 +27,8 @@ std::unique_ptr<Estimator> make_estimator(const std::string& method, const ImuNo
                                           const Mounting& mounting, Sink& sink) {
   Aligner aligner(AlignmentOptions{}, noise, mounting);
   if (method == "rts")
-    return make_rts_smoother(noise, Layout{}, EkfOptions{}, std::move(aligner), {}, sink);
+    return make_smoother(std::make_unique<RtsRecorder>(noise, Layout{}, EkfOptions{}),
+                         std::move(aligner), {}, sink);
   return std::make_unique<NavigationRun>(
       std::make_unique<EkfNavigator>(noise, Layout{}, EkfOptions{}), std::move(aligner),
       NavigationRunOptions{}, sink);

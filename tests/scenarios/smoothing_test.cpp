@@ -8,11 +8,12 @@
 #include <string>
 #include <vector>
 
-#include "foucault/ekf/rts_smoother.h"
+#include "foucault/ekf/rts.h"
 #include "foucault/evaluation/outage_run.h"
 #include "foucault/evaluation/statistics.h"
 #include "foucault/fgo/batch.h"
 #include "foucault/fgo/window_navigator.h"
+#include "foucault/navigation/smoother.h"
 #include "foucault/simulation/simulated_source.h"
 
 namespace foucault {
@@ -38,13 +39,16 @@ Maker forward(const std::string& method) {
 
 Maker batch(PreintegrationModel model, bool from_window) {
   return [=](const ImuNoise& noise, Aligner aligner, Sink& sink) {
-    return make_batch_smoother(from_window ? window(model, noise) : filter(noise), FgoOptions{},
-                               model, noise, std::move(aligner), {}, sink);
+    return make_smoother(
+        std::make_unique<BatchRecorder>(from_window ? window(model, noise) : filter(noise),
+                                        FgoOptions{}, model, noise),
+        std::move(aligner), {}, sink);
   };
 }
 
 std::unique_ptr<Estimator> rts(const ImuNoise& noise, Aligner aligner, Sink& sink) {
-  return make_rts_smoother(noise, Layout{}, EkfOptions{}, std::move(aligner), {}, sink);
+  return make_smoother(std::make_unique<RtsRecorder>(noise, Layout{}, EkfOptions{}),
+                       std::move(aligner), {}, sink);
 }
 
 /// RMS of the outages' maximum horizontal errors [m].

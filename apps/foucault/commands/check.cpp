@@ -6,7 +6,7 @@
 #include "command.h"
 #include "config_arguments.h"
 #include "foucault/core/error.h"
-#include "foucault/inertial/log_check.h"
+#include "foucault/diagnosis/log_check.h"
 #include "foucault/rawlog/rawlog_source.h"
 #include "settings.h"
 

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "foucault/inertial/navigation_run.h"
+#include "foucault/navigation/navigation_run.h"
 #include "foucault/simulation/simulated_source.h"
 #include "trip.h"
 

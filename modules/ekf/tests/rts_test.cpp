@@ -4,7 +4,7 @@
 
 #include <map>
 
-#include "foucault/ekf/rts_smoother.h"
+#include "foucault/navigation/smoother.h"
 #include "foucault/simulation/simulated_source.h"
 #include "trip.h"
 
@@ -191,7 +191,8 @@ Collected run_smoother(const ScenarioOptions& scenario, const ImuNoise& noise,
   SimulatedSource source(scenario, noise);
   Aligner aligner(given_alignment(source, scenario.start_ns()), noise, source.mounting());
   const std::unique_ptr<Estimator> rts =
-      make_rts_smoother(noise, Layout{}, EkfOptions{}, std::move(aligner), options, collected);
+      make_smoother(std::make_unique<RtsRecorder>(noise, Layout{}, EkfOptions{}),
+                    std::move(aligner), options, collected);
   feed(*rts, source, scenario.start_ns());
   return collected;
 }

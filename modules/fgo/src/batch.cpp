@@ -145,16 +145,4 @@ SmoothedEpoch BatchRecorder::smoothed_at(const Passage& passage, const Epoch& ep
           boxminus(state, passage.filtered)};
 }
 
-std::unique_ptr<Estimator> make_batch_smoother(std::unique_ptr<Navigator> forward,
-                                               const FgoOptions& options, PreintegrationModel model,
-                                               const ImuNoise& noise, Aligner aligner,
-                                               const NavigationRunOptions& run_options, Sink& sink,
-                                               const Layout& layout) {
-  auto recorder =
-      std::make_unique<BatchRecorder>(std::move(forward), options, model, noise, layout);
-  BatchRecorder& recording = *recorder;
-  return std::make_unique<Smoother>(std::move(recorder), recording, std::move(aligner), run_options,
-                                    sink);
-}
-
 }  // namespace foucault

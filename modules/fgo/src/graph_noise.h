@@ -1,6 +1,6 @@
 #pragma once
 
-#include "foucault/inertial/imu_noise.h"
+#include "foucault/imu/imu_noise.h"
 
 namespace foucault {
 

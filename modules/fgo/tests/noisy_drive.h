@@ -9,8 +9,8 @@
 #include "foucault/core/time.h"
 #include "foucault/fgo/fgo_options.h"
 #include "foucault/geodesy/local_frame.h"
-#include "foucault/inertial/navigator.h"
 #include "foucault/measurement/gnss_position.h"
+#include "foucault/measurement/navigator.h"
 #include "foucault/preintegration/motion.h"
 
 namespace foucault::testing {

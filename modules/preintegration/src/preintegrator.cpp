@@ -6,7 +6,7 @@
 
 #include "foucault/core/so3.h"
 #include "foucault/core/time.h"
-#include "foucault/inertial/increments.h"
+#include "foucault/imu/increments.h"
 
 namespace foucault {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "foucault/core/so3.h"
-#include "foucault/inertial/increments.h"
+#include "foucault/imu/increments.h"
 #include "foucault/preintegration/preintegrator.h"
 
 namespace foucault::testing {

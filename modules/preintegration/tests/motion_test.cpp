@@ -5,7 +5,7 @@
 #include <random>
 
 #include "closed_form_motion.h"
-#include "foucault/inertial/increments.h"
+#include "foucault/imu/increments.h"
 
 namespace foucault {
 namespace {

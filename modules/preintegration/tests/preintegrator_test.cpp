@@ -8,7 +8,7 @@
 
 #include "closed_form_motion.h"
 #include "dense_preintegrator.h"
-#include "foucault/inertial/increments.h"
+#include "foucault/imu/increments.h"
 
 namespace foucault {
 namespace {

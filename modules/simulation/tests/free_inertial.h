@@ -4,7 +4,7 @@
 
 #include "foucault/core/so3.h"
 #include "foucault/geodesy/wgs84.h"
-#include "foucault/inertial/increments.h"
+#include "foucault/imu/increments.h"
 #include "foucault/simulation/imu_simulator.h"
 #include "foucault/simulation/trajectory.h"
 

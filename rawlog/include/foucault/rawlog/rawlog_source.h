@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "foucault/core/config.h"
-#include "foucault/inertial/imu_noise.h"
+#include "foucault/imu/imu_noise.h"
 #include "foucault/state/interfaces.h"
 
 namespace foucault {

@@ -6,7 +6,7 @@
 #include <variant>
 
 #include "foucault/core/measurement.h"
-#include "foucault/inertial/increments.h"
+#include "foucault/imu/increments.h"
 #include "foucault/state/interfaces.h"
 
 namespace foucault {

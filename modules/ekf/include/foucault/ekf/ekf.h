@@ -2,9 +2,9 @@
 
 #include "foucault/core/config.h"
 #include "foucault/ekf/error_model.h"
-#include "foucault/inertial/imu_noise.h"
-#include "foucault/inertial/navigator.h"
-#include "foucault/inertial/recent_rates.h"
+#include "foucault/imu/imu_noise.h"
+#include "foucault/imu/recent_rates.h"
+#include "foucault/measurement/navigator.h"
 
 namespace foucault {
 

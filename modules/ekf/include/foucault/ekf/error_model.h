@@ -2,8 +2,8 @@
 
 #include <Eigen/Core>
 
-#include "foucault/inertial/imu_noise.h"
-#include "foucault/inertial/strapdown.h"
+#include "foucault/imu/imu_noise.h"
+#include "foucault/imu/strapdown.h"
 #include "foucault/state/layout.h"
 
 /// Error dynamics of the strapdown mechanization: transition and process noise of a NavState's

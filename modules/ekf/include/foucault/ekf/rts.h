@@ -3,7 +3,7 @@
 #include <deque>
 
 #include "foucault/ekf/ekf.h"
-#include "foucault/inertial/smoother.h"
+#include "foucault/measurement/recording.h"
 
 /// Rauch-Tung-Striebel smoothing of an EKF run.
 /// Source: Rauch, Tung, Striebel, AIAA Journal 3 (1965); in the error-state form of Shin (2005),

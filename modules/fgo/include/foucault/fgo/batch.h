@@ -6,8 +6,9 @@
 
 #include "foucault/core/config.h"
 #include "foucault/fgo/batch_solver.h"
-#include "foucault/inertial/recent_rates.h"
-#include "foucault/inertial/smoother.h"
+#include "foucault/imu/recent_rates.h"
+#include "foucault/measurement/navigator.h"
+#include "foucault/measurement/recording.h"
 
 /// Smoothing by one optimization over a whole log: the cost (48) with every node in the window.
 namespace foucault {
@@ -72,12 +73,5 @@ class BatchRecorder final : public Navigator, public Recording {
   RecentRates rates_{kLeverArmRateMemory};
   EarthModel earth_;
 };
-
-/// Method `batch`.
-std::unique_ptr<Estimator> make_batch_smoother(std::unique_ptr<Navigator> forward,
-                                               const FgoOptions& options, PreintegrationModel model,
-                                               const ImuNoise& noise, Aligner aligner,
-                                               const NavigationRunOptions& run_options, Sink& sink,
-                                               const Layout& layout = {});
 
 }  // namespace foucault

@@ -10,8 +10,8 @@
 #include "foucault/fgo/fgo_options.h"
 #include "foucault/fgo/imu_interval.h"
 #include "foucault/fgo/observation_factor.h"
-#include "foucault/inertial/navigator.h"
-#include "foucault/inertial/recent_rates.h"
+#include "foucault/imu/recent_rates.h"
+#include "foucault/measurement/navigator.h"
 
 namespace foucault {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "foucault/inertial/imu_noise.h"
+#include "foucault/imu/imu_noise.h"
 #include "foucault/laboratory/exact_interval.h"
 #include "foucault/laboratory/lab_motion.h"
 

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "foucault/core/measurement.h"
-#include "foucault/inertial/imu_noise.h"
+#include "foucault/imu/imu_noise.h"
 #include "foucault/state/blocks.h"
 
 namespace foucault {

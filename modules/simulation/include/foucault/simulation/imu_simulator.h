@@ -4,8 +4,8 @@
 #include <Eigen/Geometry>
 
 #include "foucault/core/measurement.h"
-#include "foucault/inertial/imu_noise.h"
-#include "foucault/inertial/increments.h"
+#include "foucault/imu/imu_noise.h"
+#include "foucault/imu/increments.h"
 #include "foucault/simulation/random.h"
 #include "foucault/simulation/trajectory.h"
 #include "foucault/state/blocks.h"

@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "foucault/inertial/imu_noise.h"
+#include "foucault/imu/imu_noise.h"
 #include "foucault/simulation/gnss_simulator.h"
 #include "foucault/simulation/imu_simulator.h"
 #include "foucault/simulation/scenario.h"

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <optional>
+
+#include "foucault/core/measurement.h"
+#include "foucault/imu/imu_noise.h"
+#include "foucault/state/result.h"
+
+namespace foucault {
+
+/// What an alignment has found out, at one stamp, with the errors of each piece. Independent errors
+/// are listed; how they spread over the state is worked out by initial_state().
+struct AlignmentFindings {
+  GnssFix fix;  ///< position of the antenna, lever arm
+  Eigen::Quaterniond q_v_b = Eigen::Quaterniond::Identity();
+
+  Eigen::Vector3d antenna_velocity_n = Eigen::Vector3d::Zero();  ///< [m/s]
+  Eigen::Vector3d acceleration_n = Eigen::Vector3d::Zero();      ///< mean over the level [m/s^2]
+  /// Joint covariance of antenna_velocity_n and acceleration_n.
+  Eigen::Matrix<double, 6, 6> motion_covariance = Eigen::Matrix<double, 6, 6>::Zero();
+
+  Eigen::Vector3d specific_force_b = Eigen::Vector3d::Zero();  ///< mean, turned to the stamp
+  Eigen::Matrix3d specific_force_covariance = Eigen::Matrix3d::Zero();  ///< noise, not bias
+
+  double heading = 0;           ///< of the vehicle [rad]
+  double heading_variance = 0;  ///< [rad^2], what does not come from antenna_velocity_n
+  /// d heading / d velocity error, zero if the heading was not read off this velocity.
+  Eigen::Vector3d heading_by_velocity = Eigen::Vector3d::Zero();
+
+  Eigen::Vector3d gyro_b = Eigen::Vector3d::Zero();  ///< mean rate measured [rad/s]
+  Eigen::Vector3d turn_n = Eigen::Vector3d::Zero();  ///< true mean rate of b against n [rad/s]
+  Eigen::Matrix3d gyro_covariance = Eigen::Matrix3d::Zero();  ///< of both together, b
+  Eigen::Vector3d omega_b = Eigen::Vector3d::Zero();  ///< true rate at the stamp, for the lever arm
+};
+
+/// Reaction to gravity and acceleration that an ideal accelerometer feels, in n [m/s^2].
+Eigen::Vector3d specific_force_n(const AlignmentFindings& findings);
+
+/// The attitude of `findings`: R f_b = a_n - g_n in direction, forward axis at the heading.
+Eigen::Quaterniond attitude_of(const AlignmentFindings& findings);
+
+/// State and covariance.
+///   level: f x dtheta = -(b_a + n + R^T da) across f, so dtheta = f x (...) / |f|^2
+///   heading: rotation about f that puts the forward axis right
+///   gyro bias: gyro_b - R^T (omega_ie + turn), so db = -[w_b x] dtheta - n
+///   position, velocity: lever arm turned by dtheta
+/// and then the priors of the biases; the length of f tells the accelerometer's bias along it.
+/// Scale factors of the accelerometers, if `layout` has them, share in level and length of f: what
+/// the length tells is bias and scale together.
+Epoch initial_state(const AlignmentFindings& findings, const ImuNoise& noise,
+                    const Layout& layout = {});
+
+/// A given angle in the place of the one found.
+struct GivenAngle {
+  double value = 0;  ///< [rad]
+  double sigma = 0;  ///< [rad]
+};
+struct GivenAngles {
+  std::optional<GivenAngle> roll, pitch, heading;
+};
+
+/// Replaces the angles of the vehicle by given ones; their errors are independent of all else.
+Epoch with_given_angles(const Epoch& epoch, const Eigen::Quaterniond& q_v_b,
+                        const GivenAngles& given);
+
+/// State from three given angles; biases zero with their priors.
+/// velocity_covariance [m^2/s^2].
+Epoch given_state(const GnssFix& fix, const Eigen::Vector3d& antenna_velocity_n,
+                  const Eigen::Matrix3d& velocity_covariance, const Eigen::Vector3d& omega_b,
+                  const Eigen::Quaterniond& q_v_b, const GivenAngles& given, const ImuNoise& noise);
+
+}  // namespace foucault

@@ -1,0 +1,153 @@
+#include "foucault/diagnosis/fix_guard.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "foucault/core/position.h"
+#include "foucault/core/time.h"
+#include "foucault/geodesy/local_frame.h"
+
+namespace foucault {
+namespace {
+
+/// Receivers give no position beyond 1000 knots, 515 m/s (export rules); twice that.
+constexpr double kFastest = 1000;  // [m/s]
+/// Nearer errors are for the judge of innovations, who knows the state.
+constexpr double kFarAway = 10000;    // [m]
+constexpr double kLongestDoubt = 60;  // [s]
+constexpr std::size_t kRuns = 10;
+constexpr int kEnoughRuns = 8;
+constexpr int kOften = 3;               // fixes of one position
+constexpr double kEarthRadius = 6.4e6;  // [m], smallest
+
+/// A lower bound of the way between two positions, good also across the Earth [m].
+double distance(const Geodetic& a, const Geodetic& b) {
+  const double north = std::sin((b.latitude - a.latitude) / 2);
+  const double east = std::sin((b.longitude - a.longitude) / 2);
+  const double h = north * north + std::cos(a.latitude) * std::cos(b.latitude) * east * east;
+  const double chord = 2 * kEarthRadius * std::sqrt(h);
+  return std::hypot(chord, b.height - a.height);
+}
+
+bool reaches(const GnssFix& a, const GnssFix& b) {
+  const double dt = std::abs(seconds_between(a.t_ns, b.t_ns));
+  return distance(a.antenna, b.antenna) <= kFarAway + kFastest * dt;
+}
+
+bool velocity_is_valid(const GnssFix& fix) {
+  return fix.velocity_n->allFinite() && fix.velocity_covariance.allFinite() &&
+         fix.velocity_covariance.diagonal().minCoeff() >= 0;
+}
+
+std::string when(int64_t t_ns) { return fmt::format("{:.3f} s", to_seconds(t_ns)); }
+
+}  // namespace
+
+void FixGuard::Tally::add(int64_t t_ns) {
+  if (count++ == 0) first_ns = t_ns;
+}
+
+FixGuard::Verdict FixGuard::look_at(const GnssFix& fix) {
+  Verdict verdict;
+  if (!is_position(fix.antenna) || !fix.p_b_a.allFinite()) {
+    no_position_.add(fix.t_ns);
+    return verdict;
+  }
+  if (!in_reach(fix)) {
+    out_of_reach_.add(fix.t_ns);
+    return verdict;
+  }
+  if (held_positions_.repeats(fix)) {
+    held_.add(fix.t_ns);
+    verdict.held = true;
+    return verdict;
+  }
+  verdict.fix = fix;
+  if (fix.velocity_n && !velocity_is_valid(fix)) {
+    verdict.fix->velocity_n.reset();
+    bad_velocity_.add(fix.t_ns);
+  }
+  return verdict;
+}
+
+bool HeldPositions::repeats(const GnssFix& fix) {
+  const bool same_stamp = first_ && fix.t_ns == std::exchange(last_ns_, fix.t_ns);
+  if (same_stamp) return false;  // a fix that comes twice is another matter
+  const bool same = first_ && first_->antenna.latitude == fix.antenna.latitude &&
+                    first_->antenna.longitude == fix.antenna.longitude;
+  if (same) {
+    ++fixes_;
+    return is_held();
+  }
+  if (first_) end_run(fix);
+  first_ = fix;
+  last_ns_ = fix.t_ns;
+  fixes_ = 1;
+  return false;
+}
+
+void HeldPositions::end_run(const GnssFix& next) {
+  constexpr double kWalking = 1;  // [m/s]
+  const double way = distance(first_->antenna, next.antenna);
+  const double time = std::abs(seconds_between(first_->t_ns, next.t_ns));
+  runs_.push_back({fixes_, way > kWalking * time});
+  if (runs_.size() > kRuns) runs_.pop_front();
+}
+
+bool HeldPositions::is_held() const {
+  if (runs_.size() < kRuns) return false;
+  int moving = 0;
+  std::vector<int> lengths;
+  for (const Run& run : runs_) {
+    moving += run.moving && run.fixes > 1 ? 1 : 0;
+    lengths.push_back(run.fixes);
+  }
+  std::nth_element(lengths.begin(), lengths.begin() + kRuns / 2, lengths.end());
+  const int usual = lengths[kRuns / 2];
+  const int equal = static_cast<int>(std::count(lengths.begin(), lengths.end(), usual));
+  return moving >= kEnoughRuns || (usual >= kOften && equal >= kEnoughRuns);
+}
+
+void FixGuard::go_on(std::optional<Place>& place, const GnssFix& fix) {
+  if (!place || !reaches(place->last, fix)) place = Place{fix, fix.t_ns, 0};
+  place->last = fix;
+  ++place->fixes;
+}
+
+bool FixGuard::in_reach(const GnssFix& fix) {
+  if (!believed_ || reaches(believed_->last, fix)) {
+    go_on(believed_, fix);
+    doubted_.reset();
+    return true;
+  }
+  go_on(doubted_, fix);
+  const bool more = doubted_->fixes > believed_->fixes;
+  const bool longer = seconds_between(doubted_->since_ns, fix.t_ns) > kLongestDoubt;
+  if (!more && !longer) return false;
+  believed_ = doubted_;
+  doubted_.reset();
+  return true;
+}
+
+std::vector<std::string> FixGuard::summary() const {
+  std::vector<std::string> lines;
+  const auto add = [&](const Tally& tally, const char* what) {
+    if (tally.count == 0) return;
+    lines.push_back(
+        fmt::format("{} fixes {}, the first at {}", tally.count, what, when(tally.first_ns)));
+  };
+  add(no_position_,
+      "are no positions (latitude and longitude zero, not finite, or out of range) and were left "
+      "out");
+  add(out_of_reach_, "lie where no vehicle gets to from the others and were left out");
+  add(held_,
+      "repeat the position before them under a new stamp; the first of each counts, the repeats "
+      "were left out");
+  add(bad_velocity_, "have a velocity or a sigma of it that is no number; it is not used");
+  return lines;
+}
+
+}  // namespace foucault

@@ -1,0 +1,84 @@
+#include "foucault/diagnosis/fix_judge.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "foucault/core/time.h"
+
+namespace foucault {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+/// After a hole the attitude may be off by tens of degrees, beyond what is linear: sigmas are then
+/// too small for a while, and every fix is needed.
+constexpr int64_t kGateOpenNs = 10 * kNanosecondsPerSecond;
+constexpr int64_t kStateDoubtedNs = 60 * kNanosecondsPerSecond;
+constexpr std::size_t kLevelMemory = 31;  // fixes
+constexpr std::size_t kLevelNeeds = 5;
+constexpr double kBelievedMemory = 60;  // fixes
+constexpr double kLargestShare = 10;    // of one fix, times the level
+/// Survival function of the chi-square distribution with up to 3 degrees of freedom.
+double chi_square_tail(double x, int dimension) {
+  if (dimension == 2) return std::exp(-x / 2);
+  const double one = std::erfc(std::sqrt(x / 2));
+  return dimension == 1 ? one : one + std::sqrt(2 * x / kPi) * std::exp(-x / 2);
+}
+
+double chi_square_median(int dimension) {
+  constexpr std::array<double, 4> kMedian{0, 0.455, 1.386, 2.366};
+  return kMedian[static_cast<std::size_t>(dimension)];
+}
+
+}  // namespace
+
+double mahalanobis_squared(const Eigen::Vector3d& value, const Eigen::Matrix3d& covariance) {
+  return value.dot(Eigen::LLT<Eigen::Matrix3d>(covariance).solve(value));
+}
+
+double mahalanobis_squared(const Innovation& innovation) {
+  return innovation.value.dot(innovation.covariance.llt().solve(innovation.value));
+}
+
+void FixJudge::start(int64_t t_ns) {
+  squares_.clear();
+  believed_level_ = 1;
+  state_doubted_until_ns_ = t_ns + kStateDoubtedNs;
+}
+
+void FixJudge::doubt_state(int64_t t_ns) {
+  state_doubted_until_ns_ = t_ns + kStateDoubtedNs;
+  gate_open_until_ns_ = std::max(gate_open_until_ns_, t_ns + kGateOpenNs);
+}
+
+double FixJudge::level() const {
+  double level = std::max(1.0, believed_level_);
+  if (squares_.size() < kLevelNeeds) return level;
+  std::vector<double> sorted(squares_.begin(), squares_.end());
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+  std::nth_element(sorted.begin(), middle, sorted.end());
+  return std::max(level, *middle / chi_square_median(dimension_));
+}
+
+void FixJudge::remember(double square) {
+  squares_.push_back(square);
+  if (squares_.size() > kLevelMemory) squares_.pop_front();
+}
+
+bool FixJudge::passes(double square) const {
+  return chi_square_tail(square / level(), dimension_) >= options_.gate_false_alarm;
+}
+
+bool FixJudge::believes(int64_t t_ns, const Innovation& innovation) {
+  const double square = mahalanobis_squared(innovation);
+  const bool passed = passes(square);
+  remember(square);
+  if (!passed) return gate_is_open(t_ns);
+  const double share = std::min(square / dimension_, kLargestShare * level());
+  believed_level_ += (share - believed_level_) / kBelievedMemory;
+  return true;
+}
+
+}  // namespace foucault

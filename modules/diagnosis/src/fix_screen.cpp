@@ -1,0 +1,69 @@
+#include "foucault/diagnosis/fix_screen.h"
+
+#include <cmath>
+#include <utility>
+
+#include "foucault/core/time.h"
+#include "foucault/geodesy/course.h"
+#include "foucault/geodesy/local_frame.h"
+
+namespace foucault {
+namespace {
+
+constexpr double kAcceleration = 8;  // [m/s^2]
+constexpr double kSigmas = 5;
+constexpr double kLongestWait = 3;  // [s]
+
+/// Distance of a fix from the line through two others, which a vehicle can explain by its
+/// acceleration up to a part of it.
+struct Deviation {
+  double horizontal = 0;
+  double explained = 0;
+};
+
+Deviation deviation(const GnssFix& fix, const GnssFix& a, const GnssFix& b) {
+  const double to_a = seconds_between(a.t_ns, fix.t_ns);
+  const double to_b = seconds_between(fix.t_ns, b.t_ns);
+  const double share = to_a / seconds_between(a.t_ns, b.t_ns);
+  const LocalFrame frame(fix.antenna);
+  const Eigen::Vector3d on_line =
+      (1 - share) * frame.to_local(a.antenna) + share * frame.to_local(b.antenna);
+  const double sigma = horizontal_sigma(fix.position_covariance) +
+                       std::abs(1 - share) * horizontal_sigma(a.position_covariance) +
+                       std::abs(share) * horizontal_sigma(b.position_covariance);
+  return {on_line.head<2>().norm(), 0.5 * kAcceleration * std::abs(to_a * to_b) + kSigmas * sigma};
+}
+
+}  // namespace
+
+std::optional<FixScreen::Screened> FixScreen::next(bool all) {
+  if (waiting_.empty()) return std::nullopt;
+  Screened screened{waiting_.front(), true};
+  const auto* fix = std::get_if<GnssFix>(&screened.measurement);
+  if (fix != nullptr && fix->position_covariance.allFinite()) {
+    const std::optional<GnssFix> after = second_fix();
+    const bool waited = seconds_between(fix->t_ns, stamp(waiting_.back())) > kLongestWait;
+    if (before_ && !after && !waited && !all) return std::nullopt;
+    if (before_ && after) {
+      const Deviation d = deviation(*fix, *before_, *after);
+      screened.plausible = !(d.horizontal > d.explained);
+    }
+    if (screened.plausible) before_ = *fix;
+  }
+  waiting_.pop_front();
+  return screened;
+}
+
+std::optional<GnssFix> FixScreen::second_fix() const {
+  for (std::size_t i = 1; i < waiting_.size(); ++i) {
+    const auto* fix = std::get_if<GnssFix>(&waiting_[i]);
+    if (fix != nullptr && fix->position_covariance.allFinite()) return *fix;
+  }
+  return std::nullopt;
+}
+
+std::deque<Measurement> FixScreen::take_all() { return std::exchange(waiting_, {}); }
+
+void FixScreen::restart() { before_.reset(); }
+
+}  // namespace foucault

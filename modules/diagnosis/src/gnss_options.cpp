@@ -1,0 +1,37 @@
+#include "foucault/diagnosis/gnss_options.h"
+
+namespace foucault {
+
+void GnssOptions::fields(ConfigFields& f) {
+  f.text("min_quality", min_quality,
+         {"any", "single", "differential", "ppp", "float_rtk", "fixed_rtk"},
+         "fixes of a lower quality are not used");
+  f.number("sigma_scale", sigma_scale, kPositive, "factor on the sigmas of the positions");
+  f.number("sigma_floor_m", sigma_floor_m, kNotNegative, "smallest sigma of a position, each axis");
+  f.number("gate_false_alarm", gate_false_alarm, {0, 0.5},
+           "probability that a good fix is taken for an outlier; 0: no gate");
+  f.integer("reinstate_after", reinstate_after, {1, 1e9},
+            "outliers in a row after which fixes are believed again");
+}
+
+FixQuality GnssOptions::lowest_quality() const {
+  if (min_quality == "single") return FixQuality::single;
+  if (min_quality == "differential") return FixQuality::differential;
+  if (min_quality == "ppp") return FixQuality::ppp;
+  if (min_quality == "float_rtk") return FixQuality::float_rtk;
+  if (min_quality == "fixed_rtk") return FixQuality::fixed_rtk;
+  return FixQuality::unknown;
+}
+
+GnssFix GnssOptions::weighted(const GnssFix& fix) const {
+  GnssFix result = fix;
+  result.position_covariance *= sigma_scale * sigma_scale;
+  const double floor_variance = sigma_floor_m * sigma_floor_m;
+  for (int axis = 0; axis < 3; ++axis) {
+    double& variance = result.position_covariance(axis, axis);
+    if (variance < floor_variance) variance = floor_variance;
+  }
+  return result;
+}
+
+}  // namespace foucault

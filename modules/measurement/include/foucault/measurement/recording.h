@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstddef>
+#include <deque>
+
+#include "foucault/state/epoch.h"
+
+namespace foucault {
+
+/// The solution at a node from everything measured.
+struct SmoothedEpoch {
+  NavState state;
+  PackedSymmetric covariance;
+  /// The errors it found: in the forward run's state before the node's measurements, and after
+  /// them; the same where there are none.
+  NodeVector before = NodeVector::Zero();
+  NodeVector after = NodeVector::Zero();
+
+  Epoch epoch() const { return {state, covariance.full()}; }
+};
+
+/// A Navigator that leaves nodes on its way, for smoothing once the way is over.
+class Recording {
+ public:
+  virtual ~Recording() = default;
+
+  /// Makes sure that there is a node at the current time; gives its index.
+  virtual std::size_t mark() = 0;
+  virtual bool at_node() const = 0;
+  virtual std::size_t size() const = 0;
+
+  /// One a node, in order. Called once, at the end.
+  virtual std::deque<SmoothedEpoch> smoothed() = 0;
+};
+
+}  // namespace foucault

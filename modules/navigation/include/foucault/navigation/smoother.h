@@ -1,0 +1,84 @@
+#pragma once
+
+#include <deque>
+#include <memory>
+#include <variant>
+#include <vector>
+
+#include "foucault/measurement/recording.h"
+#include "foucault/navigation/navigation_run.h"
+#include "foucault/state/interfaces.h"
+
+/// Smoothing: a forward run that leaves nodes, and afterwards every epoch from all fixes.
+namespace foucault {
+
+/// The smoothed solution between two neighbouring nodes, where the forward run had `forward`: the
+/// errors found after `begin` and before `end` are interpolated, that of the position to the third
+/// order with those of the velocity. With nodes a second apart it differs from that of a node there
+/// by millimetres after an outage of 60 s. The covariance is interpolated.
+Epoch between(const SmoothedEpoch& begin, const SmoothedEpoch& end, const NavState& forward);
+
+/// Runs a recording navigator forward and gives out everything at finish(), epochs from all fixes.
+/// Innovations of fixes are those of the forward run, postfits those of the smoothed solution. With
+/// EpochRate::imu the epochs between nodes are interpolated, see between(); memory then grows by
+/// 200 bytes an epoch, else by what a node takes. finish() throws DataError if a node's solution is
+/// not finite; nothing has been given out then.
+class Smoother : public Estimator {
+ public:
+  /// `recording` is what `navigator` leaves; both live as long as this.
+  Smoother(std::unique_ptr<Navigator> navigator, Recording& recording, Aligner aligner,
+           const NavigationRunOptions& options, Sink& sink);
+
+  void process(const Measurement& measurement) override { run_.process(measurement); }
+  void finish() override;
+
+ private:
+  /// Keeps what the forward run gives out, in its order.
+  class Keeper : public Sink {
+   public:
+    Keeper(Recording& recording, EpochRate rate, Sink& sink)
+        : recording_(recording), rate_(rate), sink_(sink) {}
+    void epoch(const Epoch& epoch) override;
+    void fix(const FixResult& result) override;
+    void observation(const ObservationResult& result) override { kept_.emplace_back(result); }
+    void notice(const Notice& notice) override;
+    bool wants_predictions() const override { return sink_.wants_predictions(); }
+    /// Those of the forward run; they do not wait.
+    void prediction(const PredictionResult& result) override { sink_.prediction(result); }
+    /// Smooths, once the forward run is over.
+    void give_out();
+
+   private:
+    struct NodeEpoch {
+      std::size_t node;
+    };
+    struct BetweenEpoch {
+      std::size_t node;  ///< the one before
+      NavState forward;
+    };
+    struct NodeFix {
+      std::size_t node;
+      FixResult result;
+    };
+
+    Recording& recording_;
+    EpochRate rate_;
+    Sink& sink_;
+    std::deque<std::variant<NodeEpoch, BetweenEpoch, NodeFix, FixResult, ObservationResult, Notice>>
+        kept_;
+  };
+
+  Keeper keeper_;
+  NavigationRun run_;
+};
+
+/// A smoother on a navigator that is itself the recording: RtsRecorder, BatchRecorder.
+template <class Recorder>
+std::unique_ptr<Estimator> make_smoother(std::unique_ptr<Recorder> recorder, Aligner aligner,
+                                         const NavigationRunOptions& options, Sink& sink) {
+  Recording& recording = *recorder;
+  return std::make_unique<Smoother>(std::move(recorder), recording, std::move(aligner), options,
+                                    sink);
+}
+
+}  // namespace foucault

@@ -1,0 +1,118 @@
+#include "foucault/navigation/smoother.h"
+
+#include <fmt/format.h>
+
+#include "foucault/core/error.h"
+#include "foucault/core/profile.h"
+#include "foucault/core/time.h"
+#include "foucault/geodesy/place.h"
+#include "sound_epoch.h"
+
+namespace foucault {
+namespace {
+
+template <class... F>
+struct Overloaded : F... {
+  using F::operator()...;
+};
+template <class... F>
+Overloaded(F...) -> Overloaded<F...>;
+
+/// Value at s in [0, 1] between (a, slope a) and (b, slope b), slopes by s.
+Eigen::Vector3d hermite(double s, const Eigen::Vector3d& a, const Eigen::Vector3d& slope_a,
+                        const Eigen::Vector3d& b, const Eigen::Vector3d& slope_b) {
+  const double r = 1 - s;
+  return r * r * ((1 + 2 * s) * a + s * slope_a) + s * s * ((1 + 2 * r) * b - r * slope_b);
+}
+
+/// The error of the forward run between nodes. It is the error in n that changes smoothly.
+NodeVector error_between(double s, double length, const SmoothedEpoch& begin,
+                         const SmoothedEpoch& end, const Eigen::Quaterniond& q_n_b) {
+  using namespace block;
+  const NodeVector& a = begin.after;
+  const NodeVector& b = end.before;
+  const Eigen::Vector3d attitude_n =
+      (1 - s) * (begin.state.q_n_b * part(a, attitude)) + s * (end.state.q_n_b * part(b, attitude));
+  NodeVector error = (1 - s) * a + s * b;
+  part(error, position) = hermite(s, part(a, position), length * part(a, velocity),
+                                  part(b, position), length * part(b, velocity));
+  part(error, attitude) = q_n_b.conjugate() * attitude_n;
+  return error;
+}
+
+void throw_if_unsound(const std::deque<SmoothedEpoch>& nodes) {
+  for (const SmoothedEpoch& node : nodes) {
+    const std::optional<std::string> part = unsound_part(node.epoch());
+    if (!part) continue;
+    throw DataError(fmt::format(
+        "the smoothed solution's {} is not finite at {:.3f} s; see how far a forward method comes",
+        *part, to_seconds(node.state.t_ns)));
+  }
+}
+
+FixResult with_postfit(const FixResult& forward, const NavState& x) {
+  FixResult result = forward;
+  result.postfit_n =
+      displacement_n(x.position, result.antenna, Place(x.position)) - x.q_n_b * result.p_b_a;
+  return result;
+}
+
+}  // namespace
+
+Epoch between(const SmoothedEpoch& begin, const SmoothedEpoch& end, const NavState& forward) {
+  const double length = seconds_between(begin.state.t_ns, end.state.t_ns);
+  const double s = seconds_between(begin.state.t_ns, forward.t_ns) / length;
+  Epoch epoch{boxplus(forward, error_between(s, length, begin, end, forward.q_n_b)),
+              (1 - s) * begin.covariance.full() + s * end.covariance.full()};
+  epoch.bias.gyro = (1 - s) * begin.state.bias.gyro + s * end.state.bias.gyro;
+  epoch.bias.accel = (1 - s) * begin.state.bias.accel + s * end.state.bias.accel;
+  epoch.slow = (1 - s) * begin.state.slow + s * end.state.slow;
+  return epoch;
+}
+
+void Smoother::Keeper::epoch(const Epoch& epoch) {
+  if (rate_ == EpochRate::imu && !recording_.at_node()) {
+    kept_.emplace_back(BetweenEpoch{recording_.size() - 1, epoch});
+  } else {
+    kept_.emplace_back(NodeEpoch{recording_.mark()});
+  }
+}
+
+void Smoother::Keeper::fix(const FixResult& result) {
+  if (result.verdict == FixVerdict::used) {
+    kept_.emplace_back(NodeFix{recording_.mark(), result});
+  } else {
+    kept_.emplace_back(result);
+  }
+}
+
+void Smoother::Keeper::notice(const Notice& notice) { kept_.emplace_back(notice); }
+
+void Smoother::Keeper::give_out() {
+  recording_.mark();  // so that every epoch has a node after it
+  const StageTimer timer(Stage::smooth);
+  const std::deque<SmoothedEpoch> nodes = recording_.smoothed();
+  throw_if_unsound(nodes);
+  const auto give =
+      Overloaded{[&](const NodeEpoch& e) { sink_.epoch(nodes[e.node].epoch()); },
+                 [&](const BetweenEpoch& e) {
+                   sink_.epoch(between(nodes[e.node], nodes[e.node + 1], e.forward));
+                 },
+                 [&](const NodeFix& f) { sink_.fix(with_postfit(f.result, nodes[f.node].state)); },
+                 [&](const FixResult& f) { sink_.fix(f); },
+                 [&](const ObservationResult& o) { sink_.observation(o); },
+                 [&](const Notice& n) { sink_.notice(n); }};
+  for (const auto& kept : kept_) std::visit(give, kept);
+}
+
+Smoother::Smoother(std::unique_ptr<Navigator> navigator, Recording& recording, Aligner aligner,
+                   const NavigationRunOptions& options, Sink& sink)
+    : keeper_(recording, options.rate, sink),
+      run_(std::move(navigator), std::move(aligner), options, keeper_) {}
+
+void Smoother::finish() {
+  run_.finish();
+  keeper_.give_out();
+}
+
+}  // namespace foucault
