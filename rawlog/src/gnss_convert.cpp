@@ -12,7 +12,7 @@
 #include "mrpt_convert.h"
 
 /// GPS records of MRPT to fixes and back.
-namespace foucault {
+namespace foucault::rawlog {
 
 namespace {
 
@@ -410,4 +410,4 @@ void encode_reference(const ReferencePose& pose, mrpt::obs::CObservationGPS& gps
 
 }  // namespace rawlog
 
-}  // namespace foucault
+}  // namespace foucault::rawlog

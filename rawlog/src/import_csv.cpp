@@ -5,7 +5,7 @@
 #include "csv_readers.h"
 #include "foucault/core/error.h"
 
-namespace foucault {
+namespace foucault::rawlog {
 
 ImportSummary import_csv(const CsvImport& options) {
   const rawlog::MappingSource source{options.mapping, options.data_dir};
@@ -29,4 +29,4 @@ ImportSummary import_csv(const CsvImport& options) {
   return rawlog::run_import(options, std::move(inputs));
 }
 
-}  // namespace foucault
+}  // namespace foucault::rawlog

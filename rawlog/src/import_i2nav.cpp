@@ -9,7 +9,7 @@
 #include "foucault/core/time.h"
 #include "import_run.h"
 
-namespace foucault {
+namespace foucault::rawlog {
 
 using rawlog::RecordReader;
 using rawlog::Row;
@@ -261,4 +261,4 @@ ImportSummary import_i2nav(const I2navImport& options) {
   return rawlog::run_import(options, std::move(inputs));
 }
 
-}  // namespace foucault
+}  // namespace foucault::rawlog

@@ -8,7 +8,7 @@
 #include "foucault/core/error.h"
 #include "foucault/core/so3.h"
 
-namespace foucault {
+namespace foucault::rawlog {
 
 namespace {
 
@@ -131,4 +131,4 @@ void ImportMapping::fields(ConfigFields& f) {
   f.vector3("lever_arm_m", lever_arm_m, "IMU to antenna, forward, right, down [m]");
 }
 
-}  // namespace foucault
+}  // namespace foucault::rawlog

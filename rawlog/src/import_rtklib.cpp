@@ -12,7 +12,7 @@
 #include "foucault/core/error.h"
 #include "foucault/core/time.h"
 
-namespace foucault {
+namespace foucault::rawlog {
 
 using rawlog::Row;
 using rawlog::RowError;
@@ -253,4 +253,4 @@ ImportSummary import_rtklib(const RtklibImport& options) {
   return rawlog::run_import(options, std::move(inputs));
 }
 
-}  // namespace foucault
+}  // namespace foucault::rawlog

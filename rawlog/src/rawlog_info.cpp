@@ -8,7 +8,7 @@
 #include "mrpt_convert.h"
 #include "rawlog_stream.h"
 
-namespace foucault {
+namespace foucault::rawlog {
 
 using rawlog::LoggedObservation;
 
@@ -262,4 +262,4 @@ RawlogInfo read_rawlog_info(const std::string& path, const std::function<void(do
   return info;
 }
 
-}  // namespace foucault
+}  // namespace foucault::rawlog

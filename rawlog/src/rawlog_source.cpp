@@ -19,7 +19,7 @@
 #include "mrpt_convert.h"
 #include "rawlog_stream.h"
 
-namespace foucault {
+namespace foucault::rawlog {
 
 using rawlog::LoggedObservation;
 
@@ -534,4 +534,4 @@ const SourceCounts& RawlogSource::counts() const { return impl_->counts(); }
 std::vector<Notice> RawlogSource::notices() const { return impl_->notices(); }
 const std::optional<std::string>& RawlogSource::damage() const { return impl_->damage(); }
 
-}  // namespace foucault
+}  // namespace foucault::rawlog

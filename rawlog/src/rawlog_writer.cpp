@@ -11,7 +11,7 @@
 #include "gz_archive.h"
 #include "mrpt_convert.h"
 
-namespace foucault {
+namespace foucault::rawlog {
 
 int64_t stamp(const Record& record) {
   return std::visit([](const auto& value) { return stamp(value); }, record);
@@ -163,4 +163,4 @@ void RawlogWriter::write(const Measurement& measurement) {
 
 void RawlogWriter::finish() { impl_->finish(); }
 
-}  // namespace foucault
+}  // namespace foucault::rawlog

@@ -11,7 +11,7 @@
 #include "mrpt_log.h"
 #include "scratch.h"
 
-namespace foucault {
+namespace foucault::rawlog {
 namespace {
 
 using test::error_of;
@@ -430,4 +430,4 @@ TEST_F(BadLogs, InfoTellsWhatIsThereUpToTheDamage) {
 }
 
 }  // namespace
-}  // namespace foucault
+}  // namespace foucault::rawlog

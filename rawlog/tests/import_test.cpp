@@ -12,7 +12,7 @@
 #include "foucault/rawlog/rawlog_source.h"
 #include "scratch.h"
 
-namespace foucault {
+namespace foucault::rawlog {
 namespace {
 
 using test::error_of;
@@ -528,4 +528,4 @@ TEST_F(Rtklib, BadRows) {
 }
 
 }  // namespace
-}  // namespace foucault
+}  // namespace foucault::rawlog

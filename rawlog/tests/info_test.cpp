@@ -8,7 +8,7 @@
 #include "mrpt_log.h"
 #include "scratch.h"
 
-namespace foucault {
+namespace foucault::rawlog {
 namespace {
 
 using test::gps_at;
@@ -149,4 +149,4 @@ TEST(Info, FramesAndActionsAreTold) {
 }
 
 }  // namespace
-}  // namespace foucault
+}  // namespace foucault::rawlog

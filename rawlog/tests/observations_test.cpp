@@ -17,7 +17,7 @@
 #include "scratch.h"
 
 /// Logs as other programs write them: MRPT objects in, measurements out.
-namespace foucault {
+namespace foucault::rawlog {
 namespace {
 
 namespace gnss = mrpt::obs::gnss;
@@ -416,4 +416,4 @@ TEST_F(Observations, ASecondSampleOfOneStampIsLeftOutWhereTheyAreRare) {
 }
 
 }  // namespace
-}  // namespace foucault
+}  // namespace foucault::rawlog

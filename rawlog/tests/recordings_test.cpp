@@ -13,7 +13,7 @@
 
 /// The recordings, with the mappings that ship with the program. They lie in $FOUCAULT_DATA_DIR,
 /// else beside the source in ../shared/data; without them these tests are skipped.
-namespace foucault {
+namespace foucault::rawlog {
 namespace {
 
 using test::Scratch;
@@ -198,4 +198,4 @@ TEST_F(Recordings, KittiWithoutOriginSaysWhatToGive) {
 }
 
 }  // namespace
-}  // namespace foucault
+}  // namespace foucault::rawlog

@@ -10,7 +10,7 @@
 #include "foucault/rawlog/rawlog_writer.h"
 #include "scratch.h"
 
-namespace foucault {
+namespace foucault::rawlog {
 namespace {
 
 using test::Scratch;
@@ -347,4 +347,4 @@ TEST(Writer, SaysWhereItCannotWrite) {
 }
 
 }  // namespace
-}  // namespace foucault
+}  // namespace foucault::rawlog

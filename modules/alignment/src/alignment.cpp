@@ -17,7 +17,7 @@
 #include "moving_alignment.h"
 #include "rest_detector.h"
 
-namespace foucault {
+namespace foucault::alignment {
 
 namespace {
 
@@ -381,4 +381,4 @@ int64_t Aligner::earliest_start_ns() const { return impl_->earliest_start_ns(); 
 std::string Aligner::why_not() const { return impl_->why_not(); }
 void Aligner::restart() { impl_->restart(); }
 
-}  // namespace foucault
+}  // namespace foucault::alignment

@@ -6,7 +6,7 @@
 #include "foucault/core/so3.h"
 #include "foucault/geodesy/wgs84.h"
 
-namespace foucault {
+namespace foucault::alignment {
 
 namespace {
 
@@ -67,4 +67,4 @@ bool CarriedAttitude::reverses() const {
   return velocity_l_.head<2>().dot(forward_l.head<2>()) < kReversing;
 }
 
-}  // namespace foucault
+}  // namespace foucault::alignment

@@ -8,7 +8,7 @@
 #include "foucault/imu/imu_noise.h"
 #include "rest_detector.h"
 
-namespace foucault {
+namespace foucault::alignment {
 
 /// Carries the attitude from a rest through the drive by the gyroscopes, in a level frame l in
 /// which the vehicle headed along azimuth 0 at rest.
@@ -42,4 +42,4 @@ class CarriedAttitude {
   double noise_density_ = 0;  ///< [rad/s/sqrt(Hz)]
 };
 
-}  // namespace foucault
+}  // namespace foucault::alignment

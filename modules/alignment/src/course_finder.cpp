@@ -7,7 +7,7 @@
 #include "foucault/core/time.h"
 #include "foucault/geodesy/local_frame.h"
 
-namespace foucault {
+namespace foucault::alignment {
 
 namespace {
 
@@ -161,4 +161,4 @@ std::optional<HeadingOffset> CourseFinder::agreement() const {
   return result;
 }
 
-}  // namespace foucault
+}  // namespace foucault::alignment

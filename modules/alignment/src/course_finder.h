@@ -8,7 +8,7 @@
 #include "foucault/core/measurement.h"
 #include "foucault/geodesy/course.h"
 
-namespace foucault {
+namespace foucault::alignment {
 
 /// The attitude that the gyroscopes give at a fix, in a level frame l of arbitrary heading.
 struct LevelAttitude {
@@ -78,4 +78,4 @@ class CourseFinder {
   int courses_ = 0;
 };
 
-}  // namespace foucault
+}  // namespace foucault::alignment

@@ -10,7 +10,7 @@
 #include "foucault/geodesy/wgs84.h"
 #include "foucault/state/kalman.h"
 
-namespace foucault {
+namespace foucault::alignment {
 
 namespace {
 
@@ -243,4 +243,4 @@ Epoch given_state(const GnssFix& fix, const Vector3d& antenna_velocity_n,
   return epoch;
 }
 
-}  // namespace foucault
+}  // namespace foucault::alignment

@@ -8,7 +8,7 @@
 #include "foucault/imu/imu_noise.h"
 #include "foucault/state/result.h"
 
-namespace foucault {
+namespace foucault::alignment {
 
 /// What an alignment has found out, at one stamp, with the errors of each piece. Independent errors
 /// are listed; how they spread over the state is worked out by initial_state().
@@ -71,4 +71,4 @@ Epoch given_state(const GnssFix& fix, const Eigen::Vector3d& antenna_velocity_n,
                   const Eigen::Matrix3d& velocity_covariance, const Eigen::Vector3d& omega_b,
                   const Eigen::Quaterniond& q_v_b, const GivenAngles& given, const ImuNoise& noise);
 
-}  // namespace foucault
+}  // namespace foucault::alignment

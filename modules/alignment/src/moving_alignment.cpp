@@ -9,7 +9,7 @@
 #include "foucault/core/time.h"
 #include "foucault/geodesy/local_frame.h"
 
-namespace foucault {
+namespace foucault::alignment {
 
 namespace {
 
@@ -312,4 +312,4 @@ bool MovingAlignment::credible(const AlignmentFindings& findings) const {
          std::abs(excess) <= kLargestExcess + 3 * acceleration_sigma;
 }
 
-}  // namespace foucault
+}  // namespace foucault::alignment

@@ -10,7 +10,7 @@
 #include "foucault/imu/imu_noise.h"
 #include "initial_state.h"
 
-namespace foucault {
+namespace foucault::alignment {
 
 /// Motion of the antenna over a stretch, estimated from its fixes.
 struct MotionFit {
@@ -61,4 +61,4 @@ class MovingAlignment {
   double fastest_ = 0;
 };
 
-}  // namespace foucault
+}  // namespace foucault::alignment

@@ -7,7 +7,7 @@
 #include "foucault/geodesy/course.h"
 #include "foucault/geodesy/local_frame.h"
 
-namespace foucault {
+namespace foucault::alignment {
 
 namespace {
 
@@ -172,4 +172,4 @@ int64_t RestDetector::begin_ns() const {
   return blocks_.empty() ? block_.begin_ns : blocks_.front().begin_ns;
 }
 
-}  // namespace foucault
+}  // namespace foucault::alignment

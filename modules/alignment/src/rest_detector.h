@@ -7,7 +7,7 @@
 
 #include "foucault/core/measurement.h"
 
-namespace foucault {
+namespace foucault::alignment {
 
 /// Means of the sensors over one second.
 struct RestBlock {
@@ -74,4 +74,4 @@ class RestDetector {
   double longest_s_ = 0;
 };
 
-}  // namespace foucault
+}  // namespace foucault::alignment

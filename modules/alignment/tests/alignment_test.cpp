@@ -7,7 +7,7 @@
 #include "foucault/core/error.h"
 #include "test_drive.h"
 
-namespace foucault {
+namespace foucault::alignment {
 namespace {
 
 using namespace block;
@@ -536,4 +536,4 @@ TEST(Alignment, MemoryIsBoundedByTheOldestStart) {
 }
 
 }  // namespace
-}  // namespace foucault
+}  // namespace foucault::alignment

@@ -11,7 +11,7 @@
 #include "foucault/measurement/gnss_position.h"
 #include "foucault/state/blocks.h"
 
-namespace foucault {
+namespace foucault::diagnosis {
 namespace {
 
 using Action = FixDecision::Action;
@@ -509,4 +509,4 @@ bool FixDoubt::is_smooth() const {
   return steps < variance;
 }
 
-}  // namespace foucault
+}  // namespace foucault::diagnosis

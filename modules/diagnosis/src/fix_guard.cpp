@@ -10,7 +10,7 @@
 #include "foucault/core/time.h"
 #include "foucault/geodesy/local_frame.h"
 
-namespace foucault {
+namespace foucault::diagnosis {
 namespace {
 
 /// Receivers give no position beyond 1000 knots, 515 m/s (export rules); twice that.
@@ -150,4 +150,4 @@ std::vector<std::string> FixGuard::summary() const {
   return lines;
 }
 
-}  // namespace foucault
+}  // namespace foucault::diagnosis

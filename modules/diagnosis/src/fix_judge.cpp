@@ -8,7 +8,7 @@
 
 #include "foucault/core/time.h"
 
-namespace foucault {
+namespace foucault::diagnosis {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
@@ -81,4 +81,4 @@ bool FixJudge::believes(int64_t t_ns, const Innovation& innovation) {
   return true;
 }
 
-}  // namespace foucault
+}  // namespace foucault::diagnosis

@@ -7,7 +7,7 @@
 #include "foucault/geodesy/course.h"
 #include "foucault/geodesy/local_frame.h"
 
-namespace foucault {
+namespace foucault::diagnosis {
 namespace {
 
 constexpr double kAcceleration = 8;  // [m/s^2]
@@ -66,4 +66,4 @@ std::deque<Measurement> FixScreen::take_all() { return std::exchange(waiting_, {
 
 void FixScreen::restart() { before_.reset(); }
 
-}  // namespace foucault
+}  // namespace foucault::diagnosis

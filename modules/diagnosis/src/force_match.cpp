@@ -12,7 +12,7 @@
 #include "foucault/geodesy/wgs84.h"
 #include "foucault/imu/increments.h"
 
-namespace foucault {
+namespace foucault::diagnosis {
 namespace {
 
 using Eigen::Vector3d;
@@ -149,4 +149,4 @@ std::optional<std::string> wrong_force_factor(const MeasuredFactor& factor) {
       factor.value, factor.sigma, factor.samples);
 }
 
-}  // namespace foucault
+}  // namespace foucault::diagnosis

@@ -1,6 +1,6 @@
 #include "foucault/diagnosis/gnss_options.h"
 
-namespace foucault {
+namespace foucault::diagnosis {
 
 void GnssOptions::fields(ConfigFields& f) {
   f.text("min_quality", min_quality,
@@ -34,4 +34,4 @@ GnssFix GnssOptions::weighted(const GnssFix& fix) const {
   return result;
 }
 
-}  // namespace foucault
+}  // namespace foucault::diagnosis

@@ -8,7 +8,7 @@
 #include "foucault/core/time.h"
 #include "foucault/imu/increments.h"
 
-namespace foucault {
+namespace foucault::diagnosis {
 namespace {
 
 constexpr double kLargeRate = 0.09;       // [rad/s], 5 deg/s
@@ -175,4 +175,4 @@ std::vector<std::string> ImuGuard::summary() const {
   return lines;
 }
 
-}  // namespace foucault
+}  // namespace foucault::diagnosis

@@ -18,7 +18,7 @@
 #include "foucault/geodesy/course.h"
 #include "foucault/geodesy/local_frame.h"
 
-namespace foucault {
+namespace foucault::diagnosis {
 namespace {
 
 using Eigen::Vector3d;
@@ -589,4 +589,4 @@ std::vector<Finding> judge(const LogFacts& facts, const ImuNoise& configured) {
   return out.findings;
 }
 
-}  // namespace foucault
+}  // namespace foucault::diagnosis

@@ -6,7 +6,7 @@
 
 #include "foucault/core/error.h"
 
-namespace foucault {
+namespace foucault::diagnosis {
 namespace {
 
 constexpr double kForceMean = 10;  // [s]
@@ -75,4 +75,4 @@ void Plausibility::add(const ImuIncrement& increment) {
   look_at_turns(increment.t_end_ns);
 }
 
-}  // namespace foucault
+}  // namespace foucault::diagnosis

@@ -7,7 +7,7 @@
 #include "foucault/core/time.h"
 #include "foucault/measurement/gnss_position.h"
 
-namespace foucault {
+namespace foucault::diagnosis {
 namespace {
 
 using Eigen::Matrix3d;
@@ -107,4 +107,4 @@ ReturnTrial::Verdict ReturnTrial::verdict() const {
           believed.used};
 }
 
-}  // namespace foucault
+}  // namespace foucault::diagnosis

@@ -11,7 +11,7 @@
 #include "foucault/geodesy/course.h"
 #include "foucault/geodesy/local_frame.h"
 
-namespace foucault {
+namespace foucault::diagnosis {
 namespace {
 
 constexpr double kGrid = 0.02;            // [s] of the turns
@@ -235,4 +235,4 @@ std::optional<std::string> gross_mismatch(const TurnMatch& match, int64_t t_ns) 
       is_leap ? fmt::format(", as GPS time ({:.0f} s ahead) is of UTC", leap) : "");
 }
 
-}  // namespace foucault
+}  // namespace foucault::diagnosis

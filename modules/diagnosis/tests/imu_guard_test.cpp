@@ -6,7 +6,7 @@
 #include <limits>
 #include <random>
 
-namespace foucault {
+namespace foucault::diagnosis {
 namespace {
 
 using Eigen::Vector3d;
@@ -128,4 +128,4 @@ TEST_F(ImuGuardTest, AStuckAxisIsLeftOutAndNamed) {
 }
 
 }  // namespace
-}  // namespace foucault
+}  // namespace foucault::diagnosis

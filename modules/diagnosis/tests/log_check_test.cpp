@@ -12,7 +12,7 @@
 #include "foucault/simulation/faults.h"
 #include "foucault/simulation/simulated_source.h"
 
-namespace foucault {
+namespace foucault::diagnosis {
 namespace {
 
 using ::testing::HasSubstr;
@@ -233,4 +233,4 @@ TEST(TurnMatch, ACircleTellsNoOffset) {
 }
 
 }  // namespace
-}  // namespace foucault
+}  // namespace foucault::diagnosis

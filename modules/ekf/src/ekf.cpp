@@ -2,7 +2,7 @@
 
 #include "foucault/core/profile.h"
 
-namespace foucault {
+namespace foucault::ekf {
 
 void EkfOptions::fields(ConfigFields& f) {
   f.number("cov_interval_s", cov_interval_s, {0, 1}, "longest step of the covariance");
@@ -89,4 +89,4 @@ std::unique_ptr<Navigator> EkfNavigator::ahead(double scale) const {
   return copy;
 }
 
-}  // namespace foucault
+}  // namespace foucault::ekf

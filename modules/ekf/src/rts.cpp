@@ -2,7 +2,7 @@
 
 #include <Eigen/Cholesky>
 
-namespace foucault {
+namespace foucault::ekf {
 namespace {
 
 /// State and covariance from everything measured.
@@ -94,4 +94,4 @@ void RtsRecorder::add_node() {
   phi_.decay = sensor_part(StateVector(StateVector::Ones(state_size(state().slow.size()))));
 }
 
-}  // namespace foucault
+}  // namespace foucault::ekf

@@ -6,7 +6,7 @@
 #include "foucault/simulation/simulated_source.h"
 #include "trip.h"
 
-namespace foucault {
+namespace foucault::ekf {
 namespace {
 
 constexpr double kWarmUp = 120;  ///< until the alignment is over and the filter has settled [s]
@@ -120,4 +120,4 @@ TEST_F(EkfRun, FollowsSigmasThatGrowTenfold) {
 }
 
 }  // namespace
-}  // namespace foucault
+}  // namespace foucault::ekf

@@ -9,7 +9,7 @@
 #include "foucault/state/calibrate_options.h"
 #include "trip.h"
 
-namespace foucault {
+namespace foucault::ekf {
 namespace {
 
 using Matrix = StateMatrix;
@@ -420,4 +420,4 @@ TEST(Ekf, LooseningAddsAndForgetsNothing) {
 }
 
 }  // namespace
-}  // namespace foucault
+}  // namespace foucault::ekf

@@ -4,7 +4,7 @@
 
 #include "trip.h"
 
-namespace foucault {
+namespace foucault::ekf {
 namespace {
 
 using Matrix = StateMatrix;
@@ -272,4 +272,4 @@ TEST(ErrorModel, MonteCarloSeesMissingNoise) {
 }
 
 }  // namespace
-}  // namespace foucault
+}  // namespace foucault::ekf

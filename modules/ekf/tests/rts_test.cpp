@@ -8,7 +8,7 @@
 #include "foucault/simulation/simulated_source.h"
 #include "trip.h"
 
-namespace foucault {
+namespace foucault::ekf {
 namespace {
 
 using test::kDeg;
@@ -298,4 +298,4 @@ TEST(RtsSmoother, EpochsBetweenNodesAreInterpolated) {
 }
 
 }  // namespace
-}  // namespace foucault
+}  // namespace foucault::ekf

@@ -9,7 +9,7 @@
 #include "foucault/core/time.h"
 #include "foucault/evaluation/statistics.h"
 
-namespace foucault {
+namespace foucault::evaluation {
 namespace {
 
 constexpr int kComponents = 3;
@@ -305,4 +305,4 @@ Consistency ConsistencyCollector::result() const {
   return c;
 }
 
-}  // namespace foucault
+}  // namespace foucault::evaluation

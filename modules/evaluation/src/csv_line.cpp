@@ -1,6 +1,6 @@
 #include "foucault/evaluation/csv_line.h"
 
-namespace foucault {
+namespace foucault::evaluation {
 namespace {
 
 std::string csv_cell(const std::string& text) {
@@ -40,4 +40,4 @@ std::optional<std::vector<std::string>> split_csv_line(std::string_view line) {
   return cells;
 }
 
-}  // namespace foucault
+}  // namespace foucault::evaluation

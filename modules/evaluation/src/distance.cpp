@@ -7,7 +7,7 @@
 
 #include "foucault/core/round_step.h"
 
-namespace foucault {
+namespace foucault::evaluation {
 namespace {
 
 constexpr std::size_t kFewestInBin = 4;
@@ -212,4 +212,4 @@ TextTable distance_difference_table(const std::vector<DistanceProfile>& profiles
                   {percent, &BinDrift::horizontal_relative, &BinDrift::vertical_relative});
 }
 
-}  // namespace foucault
+}  // namespace foucault::evaluation

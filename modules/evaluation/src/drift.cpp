@@ -11,7 +11,7 @@
 #include "foucault/geodesy/local_frame.h"
 #include "foucault/state/blocks.h"
 
-namespace foucault {
+namespace foucault::evaluation {
 namespace {
 
 constexpr double kLongestInterpolation = 2;  // [s]
@@ -138,4 +138,4 @@ void FixTruth::epoch(const Epoch& epoch) {
   waiting_.pop_front();
 }
 
-}  // namespace foucault
+}  // namespace foucault::evaluation

@@ -8,7 +8,7 @@
 #include "foucault/core/time.h"
 #include "foucault/evaluation/csv_line.h"
 
-namespace foucault {
+namespace foucault::evaluation {
 namespace {
 
 std::string markdown_row(const std::vector<std::string>& cells) {
@@ -242,4 +242,4 @@ TextTable drift_record_table(const std::vector<DriftRecord>& records,
   return table;
 }
 
-}  // namespace foucault
+}  // namespace foucault::evaluation

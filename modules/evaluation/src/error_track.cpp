@@ -2,7 +2,7 @@
 
 #include <utility>
 
-namespace foucault {
+namespace foucault::evaluation {
 namespace {
 
 int64_t interval_of(int64_t t_ns, int64_t interval_ns) {
@@ -35,4 +35,4 @@ void ErrorTrack::widen() {
   for (const TrackPoint& point : narrow) put(point);
 }
 
-}  // namespace foucault
+}  // namespace foucault::evaluation

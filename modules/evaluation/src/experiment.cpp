@@ -12,7 +12,7 @@
 #include "foucault/core/time.h"
 #include "foucault/evaluation/task_pool.h"
 
-namespace foucault {
+namespace foucault::evaluation {
 namespace {
 
 constexpr std::size_t kMostNotices = 100;
@@ -239,4 +239,4 @@ std::vector<MethodOutages> table_rows(const std::vector<ExperimentResult>& resul
   return rows;
 }
 
-}  // namespace foucault
+}  // namespace foucault::evaluation

@@ -4,7 +4,7 @@
 #include <limits>
 #include <set>
 
-namespace foucault {
+namespace foucault::evaluation {
 namespace {
 
 /// Points that have been evaluated, and the best of them.
@@ -173,4 +173,4 @@ std::vector<std::vector<double>> profile(const ParameterGrid& grid, const GridSe
   return least;
 }
 
-}  // namespace foucault
+}  // namespace foucault::evaluation

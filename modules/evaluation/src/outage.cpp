@@ -9,7 +9,7 @@
 #include "foucault/core/time.h"
 #include "foucault/geodesy/local_frame.h"
 
-namespace foucault {
+namespace foucault::evaluation {
 namespace {
 
 bool has_position(const GnssFix& fix) {
@@ -100,4 +100,4 @@ std::optional<Outage> OutageSource::outage_at(int64_t t_ns) const {
   return schedule_.at(*first_fix_ns_, t_ns);
 }
 
-}  // namespace foucault
+}  // namespace foucault::evaluation

@@ -9,7 +9,7 @@
 #include "foucault/core/time.h"
 #include "foucault/evaluation/statistics.h"
 
-namespace foucault {
+namespace foucault::evaluation {
 namespace {
 
 /// A time within an outage, since its beginning [s].
@@ -175,4 +175,4 @@ TextTable return_table(const std::vector<PooledReturns>& returns, const std::str
   return table;
 }
 
-}  // namespace foucault
+}  // namespace foucault::evaluation

@@ -7,7 +7,7 @@
 
 #include "foucault/state/blocks.h"
 
-namespace foucault {
+namespace foucault::evaluation {
 namespace {
 
 double thread_cpu_s() {
@@ -152,4 +152,4 @@ OutageRunResult run_with_outages(std::unique_ptr<Source> source, const OutageSch
   return result;
 }
 
-}  // namespace foucault
+}  // namespace foucault::evaluation

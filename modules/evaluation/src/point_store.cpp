@@ -15,7 +15,7 @@
 #include "foucault/core/error.h"
 #include "foucault/evaluation/csv_line.h"
 
-namespace foucault {
+namespace foucault::evaluation {
 namespace {
 
 /// Fowler, Noll and Vo's hash 1a, 64 bit.
@@ -187,4 +187,4 @@ void PointStore::fail(const std::string& what) const {
   throw DataError(fmt::format("{}: {}", path_, what));
 }
 
-}  // namespace foucault
+}  // namespace foucault::evaluation

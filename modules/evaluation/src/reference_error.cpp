@@ -10,7 +10,7 @@
 #include "foucault/geodesy/local_frame.h"
 #include "foucault/state/vehicle_attitude.h"
 
-namespace foucault {
+namespace foucault::evaluation {
 namespace {
 
 /// Cubic with p(0) = 0, p(1) = p1, and slopes m0, m1 by s.
@@ -111,4 +111,4 @@ void ReferenceComparison::emit(const Epoch& epoch, const ReferencePose& referenc
   callback_(epoch, reference_error(epoch, mounting_, reference));
 }
 
-}  // namespace foucault
+}  // namespace foucault::evaluation

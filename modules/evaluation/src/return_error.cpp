@@ -7,7 +7,7 @@
 
 #include "foucault/core/time.h"
 
-namespace foucault {
+namespace foucault::evaluation {
 namespace {
 
 bool in_window(int64_t begin_ns, int64_t t_ns) {
@@ -64,4 +64,4 @@ std::map<int64_t, ReturnError> ReturnCollector::results() const {
   return results;
 }
 
-}  // namespace foucault
+}  // namespace foucault::evaluation

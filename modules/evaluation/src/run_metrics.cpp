@@ -9,7 +9,7 @@
 #include "foucault/state/blocks.h"
 #include "foucault/state/vehicle_attitude.h"
 
-namespace foucault {
+namespace foucault::evaluation {
 namespace {
 
 /// Right perturbation, in v, that leads from the estimate to the truth.
@@ -194,4 +194,4 @@ RunMetrics RunMetricsCollector::metrics() const {
   return m;
 }
 
-}  // namespace foucault
+}  // namespace foucault::evaluation

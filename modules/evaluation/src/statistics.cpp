@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
-namespace foucault {
+namespace foucault::evaluation {
 namespace {
 
 using Indices = std::vector<std::size_t>;
@@ -222,4 +222,4 @@ double integrated_autocorrelation(const std::vector<double>& values) {
   return std::max(1.0, 2 * sum - 1);
 }
 
-}  // namespace foucault
+}  // namespace foucault::evaluation

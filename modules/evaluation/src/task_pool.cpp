@@ -10,7 +10,7 @@
 #include <thread>
 #include <vector>
 
-namespace foucault {
+namespace foucault::evaluation {
 namespace {
 
 constexpr auto kProgressInterval = std::chrono::milliseconds(100);
@@ -108,4 +108,4 @@ void run_tasks(std::size_t count, int threads, const Task& task,
 
 int processor_count() { return std::max(1u, std::thread::hardware_concurrency()); }
 
-}  // namespace foucault
+}  // namespace foucault::evaluation

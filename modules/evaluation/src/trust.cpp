@@ -12,7 +12,7 @@
 #include "foucault/core/time.h"
 #include "foucault/evaluation/statistics.h"
 
-namespace foucault {
+namespace foucault::evaluation {
 namespace {
 
 constexpr int64_t kFewestFixes = 10;
@@ -147,4 +147,4 @@ Trust trust_in(const Consistency& consistency, const StateCount& states, const A
   return trust;
 }
 
-}  // namespace foucault
+}  // namespace foucault::evaluation

@@ -11,7 +11,7 @@
 #include "foucault/core/time.h"
 #include "foucault/evaluation/statistics.h"
 
-namespace foucault {
+namespace foucault::evaluation {
 namespace {
 
 Eigen::Matrix3d correlated_covariance() {
@@ -311,4 +311,4 @@ TEST(Consistency, OfNothing) {
 }
 
 }  // namespace
-}  // namespace foucault
+}  // namespace foucault::evaluation

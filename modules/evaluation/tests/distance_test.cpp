@@ -7,7 +7,7 @@
 #include <limits>
 #include <numeric>
 
-namespace foucault {
+namespace foucault::evaluation {
 namespace {
 
 using testing::ElementsAre;
@@ -126,4 +126,4 @@ TEST_F(Profile, NoneWhereNothingIsFar) {
 }
 
 }  // namespace
-}  // namespace foucault
+}  // namespace foucault::evaluation

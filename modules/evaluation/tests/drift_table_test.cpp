@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace foucault {
+namespace foucault::evaluation {
 namespace {
 
 using testing::ElementsAre;
@@ -93,4 +93,4 @@ TEST(TextTable, QuotesWhatItMust) {
 }
 
 }  // namespace
-}  // namespace foucault
+}  // namespace foucault::evaluation

@@ -10,7 +10,7 @@
 #include "foucault/core/time.h"
 #include "foucault/geodesy/local_frame.h"
 
-namespace foucault {
+namespace foucault::evaluation {
 namespace {
 
 constexpr int64_t kBegin = 1'600'000'000'000'000'000;
@@ -161,4 +161,4 @@ TEST(FixTruth, ComparesAtTheAntenna) {
 }
 
 }  // namespace
-}  // namespace foucault
+}  // namespace foucault::evaluation

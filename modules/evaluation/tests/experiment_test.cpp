@@ -8,7 +8,7 @@
 #include "drifting_estimator.h"
 #include "foucault/core/error.h"
 
-namespace foucault {
+namespace foucault::evaluation {
 namespace {
 
 using test::DriftingEstimator;
@@ -181,4 +181,4 @@ TEST(ErrorTrack, StaysSmallAndKeepsPeaks) {
 }
 
 }  // namespace
-}  // namespace foucault
+}  // namespace foucault::evaluation

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <functional>
 
-namespace foucault {
+namespace foucault::evaluation {
 namespace {
 
 GridAxis axis(const std::string& key, std::size_t count) {
@@ -126,4 +126,4 @@ TEST(Profile, LeastOverTheOtherParameters) {
 }
 
 }  // namespace
-}  // namespace foucault
+}  // namespace foucault::evaluation

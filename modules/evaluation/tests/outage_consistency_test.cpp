@@ -7,7 +7,7 @@
 
 #include "foucault/core/time.h"
 
-namespace foucault {
+namespace foucault::evaluation {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -115,4 +115,4 @@ TEST(PooledReturns, WithoutAReturnThereIsNoEntry) {
 }
 
 }  // namespace
-}  // namespace foucault
+}  // namespace foucault::evaluation

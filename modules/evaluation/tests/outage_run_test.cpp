@@ -8,7 +8,7 @@
 
 #include "drifting_estimator.h"
 
-namespace foucault {
+namespace foucault::evaluation {
 namespace {
 
 using test::DriftingEstimator;
@@ -149,4 +149,4 @@ TEST(OutageRun, ObserverSeesEverything) {
 }
 
 }  // namespace
-}  // namespace foucault
+}  // namespace foucault::evaluation

@@ -10,7 +10,7 @@
 #include "foucault/core/error.h"
 #include "foucault/core/time.h"
 
-namespace foucault {
+namespace foucault::evaluation {
 namespace {
 
 constexpr int64_t kFirstFix = 1'646'881'782'300'000'000;
@@ -170,4 +170,4 @@ TEST(OutageSource, PutsRequestsInThePlaceOfFixes) {
 }
 
 }  // namespace
-}  // namespace foucault
+}  // namespace foucault::evaluation

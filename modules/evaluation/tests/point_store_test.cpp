@@ -13,7 +13,7 @@
 #include "foucault/core/error.h"
 #include "foucault/evaluation/csv_line.h"
 
-namespace foucault {
+namespace foucault::evaluation {
 namespace {
 
 using testing::ElementsAre;
@@ -136,4 +136,4 @@ TEST(CsvLine, ReadsBack) {
 }
 
 }  // namespace
-}  // namespace foucault
+}  // namespace foucault::evaluation

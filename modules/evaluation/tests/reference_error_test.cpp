@@ -9,7 +9,7 @@
 #include "foucault/core/time.h"
 #include "foucault/geodesy/local_frame.h"
 
-namespace foucault {
+namespace foucault::evaluation {
 namespace {
 
 constexpr double kDegree = 0.017453292519943295;
@@ -185,4 +185,4 @@ TEST(ReferenceComparison, ForgetsReferencesThatAreTooOld) {
 }
 
 }  // namespace
-}  // namespace foucault
+}  // namespace foucault::evaluation

@@ -8,7 +8,7 @@
 
 #include "foucault/core/time.h"
 
-namespace foucault {
+namespace foucault::evaluation {
 namespace {
 
 constexpr int64_t kSecond = kNanosecondsPerSecond;
@@ -105,4 +105,4 @@ TEST(ReturnError, WithoutFixesOrErrorsThereIsNone) {
 }
 
 }  // namespace
-}  // namespace foucault
+}  // namespace foucault::evaluation

@@ -8,7 +8,7 @@
 #include "foucault/core/so3.h"
 #include "foucault/core/time.h"
 
-namespace foucault {
+namespace foucault::evaluation {
 namespace {
 
 Epoch epoch_at(double t) {
@@ -231,4 +231,4 @@ TEST(NormalizedSquare, UsesTheWholeCovariance) {
 }
 
 }  // namespace
-}  // namespace foucault
+}  // namespace foucault::evaluation

@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <vector>
 
-namespace foucault {
+namespace foucault::evaluation {
 namespace {
 
 TEST(Statistics, ByHand) {
@@ -177,4 +177,4 @@ TEST(Autocorrelation, IntegratedByHand) {
 }
 
 }  // namespace
-}  // namespace foucault
+}  // namespace foucault::evaluation

@@ -9,7 +9,7 @@
 #include <thread>
 #include <vector>
 
-namespace foucault {
+namespace foucault::evaluation {
 namespace {
 
 TEST(TaskPool, RunsEachTaskOnce) {
@@ -72,4 +72,4 @@ TEST(TaskPool, ProgressCanStopIt) {
 }
 
 }  // namespace
-}  // namespace foucault
+}  // namespace foucault::evaluation

@@ -10,7 +10,7 @@
 #include "foucault/core/time.h"
 #include "foucault/evaluation/run_metrics.h"
 
-namespace foucault {
+namespace foucault::evaluation {
 namespace {
 
 using ::testing::ElementsAre;
@@ -155,4 +155,4 @@ TEST(Trust, AStateThatIsNotFiniteCondemns) {
 }
 
 }  // namespace
-}  // namespace foucault
+}  // namespace foucault::evaluation

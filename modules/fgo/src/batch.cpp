@@ -5,7 +5,7 @@
 #include "graph_noise.h"
 #include "node_epoch.h"
 
-namespace foucault {
+namespace foucault::fgo {
 
 namespace {
 
@@ -145,4 +145,4 @@ SmoothedEpoch BatchRecorder::smoothed_at(const Passage& passage, const Epoch& ep
           boxminus(state, passage.filtered)};
 }
 
-}  // namespace foucault
+}  // namespace foucault::fgo

@@ -8,7 +8,7 @@
 #include "foucault/fgo/chain.h"
 #include "robust_loss.h"
 
-namespace foucault {
+namespace foucault::fgo {
 namespace {
 
 /// The second order of gravity is 3 g (d / R)^2 or less: 7e-7 m/s^2.
@@ -338,4 +338,4 @@ BatchSolution solve(BatchChain& chain, const GraphContext& context, const FgoOpt
   return solver.solution();
 }
 
-}  // namespace foucault
+}  // namespace foucault::fgo

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
-namespace foucault {
+namespace foucault::fgo {
 namespace {
 
 using Eigen::Dynamic;
@@ -156,4 +156,4 @@ StateMatrix covariance(const NodeInformation& information) {
   return root * root.transpose();
 }
 
-}  // namespace foucault
+}  // namespace foucault::fgo

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
-namespace foucault {
+namespace foucault::fgo {
 namespace {
 
 /// Radius of the trust region: the start is good most of the time, and a plain step the best.
@@ -104,4 +104,4 @@ void ChainProblem::optimize(const FgoOptions& options) {
     throw std::runtime_error("the factor graph could not be solved: " + summary.message);
 }
 
-}  // namespace foucault
+}  // namespace foucault::fgo

@@ -11,7 +11,7 @@
 #include "foucault/fgo/prior_factor.h"
 #include "foucault/fgo/state_block.h"
 
-namespace foucault {
+namespace foucault::fgo {
 
 /// The cost (48) over a chain of nodes and a border, for Ceres. The factors are the caller's and
 /// outlive it.
@@ -46,4 +46,4 @@ class ChainProblem {
   ceres::Problem problem_;  ///< last: refers to the members above
 };
 
-}  // namespace foucault
+}  // namespace foucault::fgo

@@ -1,6 +1,6 @@
 #include "foucault/fgo/fgo_options.h"
 
-namespace foucault {
+namespace foucault::fgo {
 
 void FgoOptions::fields(ConfigFields& f) {
   f.number("window_s", window_s, kNotNegative, "length of the sliding window");
@@ -11,4 +11,4 @@ void FgoOptions::fields(ConfigFields& f) {
   f.integer("max_iterations", max_iterations, {1, 100}, "of the solver, an epoch");
 }
 
-}  // namespace foucault
+}  // namespace foucault::fgo

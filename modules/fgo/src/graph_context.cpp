@@ -1,6 +1,6 @@
 #include "foucault/fgo/graph_context.h"
 
-namespace foucault {
+namespace foucault::fgo {
 
 Layout as_constants(const Layout& layout) {
   Layout constants;
@@ -13,4 +13,4 @@ std::optional<ImuScale> scale_of(const Layout& layout, const SlowVector& slow) {
   return layout.imu_scale(slow);
 }
 
-}  // namespace foucault
+}  // namespace foucault::fgo

@@ -4,7 +4,7 @@
 
 #include "foucault/core/error.h"
 
-namespace foucault {
+namespace foucault::fgo {
 namespace {
 
 void require(bool there, const char* zero, const char* of) {
@@ -28,4 +28,4 @@ void require_noise(const ImuNoise& noise) {
           "the sigma of the accelerometers' bias");
 }
 
-}  // namespace foucault
+}  // namespace foucault::fgo

@@ -2,10 +2,10 @@
 
 #include "foucault/imu/imu_noise.h"
 
-namespace foucault {
+namespace foucault::fgo {
 
 /// A graph weighs by inverse covariances: every error must have one.
 /// Throws UsageError naming the key of one that is zero.
 void require_noise(const ImuNoise& noise);
 
-}  // namespace foucault
+}  // namespace foucault::fgo

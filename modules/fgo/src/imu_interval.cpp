@@ -1,6 +1,6 @@
 #include "foucault/fgo/imu_interval.h"
 
-namespace foucault {
+namespace foucault::fgo {
 
 Preintegration measured(const Preintegrator& integrator, PreintegrationModel model) {
   return model == PreintegrationModel::full ? integrator.result_with_bias_decay()
@@ -34,4 +34,4 @@ void loosen(ImuInterval& interval, const NodeState& begin, const NodeState& end,
   interval.factor = std::make_unique<PreintegrationFactor>(pre, earth, layout);
 }
 
-}  // namespace foucault
+}  // namespace foucault::fgo

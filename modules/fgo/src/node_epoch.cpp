@@ -1,6 +1,6 @@
 #include "node_epoch.h"
 
-namespace foucault {
+namespace foucault::fgo {
 namespace {
 
 /// The part of a rotation that turns about the vertical.
@@ -54,4 +54,4 @@ Epoch to_epoch(int64_t t_ns, const NodeState& x, const SlowVector& slow,
   return epoch;
 }
 
-}  // namespace foucault
+}  // namespace foucault::fgo

@@ -4,7 +4,7 @@
 #include "foucault/state/epoch.h"
 
 /// Between a node's state in w and the local NED of its place.
-namespace foucault {
+namespace foucault::fgo {
 
 /// Turns the position and velocity rows of a covariance from one local frame to another.
 StateMatrix turned(const StateMatrix& P, const Eigen::Matrix3d& R);
@@ -24,4 +24,4 @@ NodeState to_node(const NavState& x, const GraphContext& context);
 Epoch to_epoch(int64_t t_ns, const NodeState& x, const SlowVector& slow,
                const StateMatrix& covariance_w, const GraphContext& context);
 
-}  // namespace foucault
+}  // namespace foucault::fgo

@@ -6,7 +6,7 @@
 
 #include "node_epoch.h"
 
-namespace foucault {
+namespace foucault::fgo {
 
 ObservationRows linearize(const NodeObservation& z, const NodeState& x, const SlowVector& slow,
                           const GraphContext& context) {
@@ -38,4 +38,4 @@ bool ObservationFactor::Evaluate(double const* const* blocks, double* residual,
   return true;
 }
 
-}  // namespace foucault
+}  // namespace foucault::fgo

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 
 /// Lower triangles, column by column.
-namespace foucault {
+namespace foucault::fgo {
 
 template <class Matrix>
 double* pack_lower(const Matrix& M, double* to) {
@@ -22,4 +22,4 @@ const double* unpack_lower(const double* from, Matrix& M) {
   return from;
 }
 
-}  // namespace foucault
+}  // namespace foucault::fgo

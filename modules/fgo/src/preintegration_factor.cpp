@@ -6,7 +6,7 @@
 #include "foucault/core/so3.h"
 #include "packed_triangle.h"
 
-namespace foucault {
+namespace foucault::fgo {
 namespace {
 
 NodeMatrix inverse_cholesky(const NodeMatrix& covariance) {
@@ -85,4 +85,4 @@ bool PreintegrationFactor::Evaluate(double const* const* blocks, double* residua
   return true;
 }
 
-}  // namespace foucault
+}  // namespace foucault::fgo

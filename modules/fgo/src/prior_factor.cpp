@@ -5,7 +5,7 @@
 
 #include "foucault/core/so3.h"
 
-namespace foucault {
+namespace foucault::fgo {
 
 SquareRootPrior prior_from_covariance(const NodeState& at, const SlowVector& slow_at,
                                       const StateMatrix& covariance) {
@@ -39,4 +39,4 @@ bool PriorFactor::Evaluate(double const* const* blocks, double* residual,
   return true;
 }
 
-}  // namespace foucault
+}  // namespace foucault::fgo

@@ -1,6 +1,6 @@
 #include "robust_loss.h"
 
-namespace foucault {
+namespace foucault::fgo {
 
 std::unique_ptr<ceres::LossFunction> make_loss(const FgoOptions& options) {
   if (options.robust == "huber") return std::make_unique<ceres::HuberLoss>(options.robust_scale);
@@ -16,4 +16,4 @@ RobustCost robust_cost(const ceres::LossFunction* loss, const ObservationRows& z
   return {rho[0], rho[1]};
 }
 
-}  // namespace foucault
+}  // namespace foucault::fgo

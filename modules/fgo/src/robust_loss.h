@@ -7,7 +7,7 @@
 #include "foucault/fgo/fgo_options.h"
 #include "foucault/fgo/whitened_rows.h"
 
-namespace foucault {
+namespace foucault::fgo {
 
 /// Null for plain least squares.
 std::unique_ptr<ceres::LossFunction> make_loss(const FgoOptions& options);
@@ -20,4 +20,4 @@ struct RobustCost {
 };
 RobustCost robust_cost(const ceres::LossFunction* loss, const ObservationRows& z);
 
-}  // namespace foucault
+}  // namespace foucault::fgo

@@ -1,6 +1,6 @@
 #include "foucault/fgo/state_block.h"
 
-namespace foucault {
+namespace foucault::fgo {
 namespace {
 
 constexpr int kP = 0, kV = 3, kQ = 6, kBg = 10, kBa = 13;
@@ -114,4 +114,4 @@ bool StateManifold::MinusJacobian(const double* x, double* jacobian) const {
   return true;
 }
 
-}  // namespace foucault
+}  // namespace foucault::fgo

@@ -9,7 +9,7 @@
 #include "node_epoch.h"
 #include "robust_loss.h"
 
-namespace foucault {
+namespace foucault::fgo {
 namespace {
 
 /// What a turn d leaves out of the quadratic form is of second order: with 2e-4 rad, 2e-8 of a
@@ -260,4 +260,4 @@ void WindowNavigator::marginalize_old() {
   }
 }
 
-}  // namespace foucault
+}  // namespace foucault::fgo

@@ -7,7 +7,7 @@
 #include "foucault/fgo/window_navigator.h"
 #include "slow_drive.h"
 
-namespace foucault {
+namespace foucault::fgo {
 namespace {
 
 using namespace testing;
@@ -341,4 +341,4 @@ TEST_F(BatchTest, LooseningBridgesAJumpOfTheState) {
 }
 
 }  // namespace
-}  // namespace foucault
+}  // namespace foucault::fgo

@@ -4,7 +4,7 @@
 #include "foucault/fgo/window_navigator.h"
 #include "slow_drive.h"
 
-namespace foucault {
+namespace foucault::fgo {
 namespace {
 
 using namespace testing;
@@ -126,4 +126,4 @@ TEST_F(Border, KeepsWhatItKnowsOverARestart) {
 }
 
 }  // namespace
-}  // namespace foucault
+}  // namespace foucault::fgo

@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-namespace foucault {
+namespace foucault::fgo {
 namespace {
 
 Eigen::MatrixXd random_matrix(std::mt19937& rng, Eigen::Index rows, Eigen::Index columns) {
@@ -176,4 +176,4 @@ TEST(ChainOfNothing, AnUndeterminedNodeIsAnError) {
 }
 
 }  // namespace
-}  // namespace foucault
+}  // namespace foucault::fgo

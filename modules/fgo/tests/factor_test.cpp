@@ -14,7 +14,7 @@
 #include "foucault/measurement/gnss_position.h"
 #include "foucault/measurement/gnss_velocity.h"
 
-namespace foucault {
+namespace foucault::fgo {
 namespace {
 
 using namespace ceres;  // NOLINT: EXPECT_THAT_MANIFOLD_INVARIANTS_HOLD needs it in Ceres 2.1
@@ -281,4 +281,4 @@ TEST(Factor, RefusesCovariancesThatAreNot) {
 }
 
 }  // namespace
-}  // namespace foucault
+}  // namespace foucault::fgo

@@ -5,7 +5,7 @@
 #include "cartesian_fix.h"
 #include "noisy_drive.h"
 
-namespace foucault {
+namespace foucault::fgo {
 namespace {
 
 using namespace testing;
@@ -302,4 +302,4 @@ TEST_F(WindowNavigatorTest, WhatLoosensItIsAddedToItsCovariance) {
 }
 
 }  // namespace
-}  // namespace foucault
+}  // namespace foucault::fgo

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace foucault {
+namespace foucault::geodesy {
 
 double azimuth(const Eigen::Vector3d& vector) { return std::atan2(vector.y(), vector.x()); }
 
@@ -17,4 +17,4 @@ double course_sigma(const Eigen::Matrix3d& covariance, const Eigen::Vector3d& wa
   return std::sqrt(variance) / way.head<2>().norm();
 }
 
-}  // namespace foucault
+}  // namespace foucault::geodesy

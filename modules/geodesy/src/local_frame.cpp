@@ -2,7 +2,7 @@
 
 #include "foucault/geodesy/wgs84.h"
 
-namespace foucault {
+namespace foucault::geodesy {
 
 LocalFrame::LocalFrame(const Geodetic& origin)
     : origin_(origin),
@@ -49,4 +49,4 @@ Eigen::Vector3d ned_offset(const Geodetic& from, const Geodetic& to) {
   return {p_w.x(), p_w.y(), from.height - to.height};
 }
 
-}  // namespace foucault
+}  // namespace foucault::geodesy

@@ -5,7 +5,7 @@
 #include "foucault/core/so3.h"
 #include "foucault/geodesy/wgs84.h"
 
-namespace foucault {
+namespace foucault::geodesy {
 
 Place::Place(const Geodetic& position)
     : radius_north(wgs84::meridian_radius(position.latitude) + position.height),
@@ -37,4 +37,4 @@ Eigen::Vector3d displacement_n(const Geodetic& from, const Geodetic& to, const P
           d_longitude * place.radius_east * place.cos_latitude, from.height - to.height};
 }
 
-}  // namespace foucault
+}  // namespace foucault::geodesy

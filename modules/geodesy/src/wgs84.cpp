@@ -6,7 +6,7 @@
 
 #include "foucault/core/so3.h"
 
-namespace foucault::wgs84 {
+namespace foucault::geodesy::wgs84 {
 namespace {
 
 constexpr double kSemiMinorAxis = kSemiMajorAxis * (1 - kFlattening);
@@ -111,4 +111,4 @@ Eigen::Vector3d earth_rate_n(double latitude) {
   return {kEarthRate * std::cos(latitude), 0, -kEarthRate * std::sin(latitude)};
 }
 
-}  // namespace foucault::wgs84
+}  // namespace foucault::geodesy::wgs84

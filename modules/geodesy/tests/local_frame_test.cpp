@@ -10,7 +10,7 @@
 #include "foucault/core/so3.h"
 #include "foucault/geodesy/wgs84.h"
 
-namespace foucault {
+namespace foucault::geodesy {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
@@ -153,4 +153,4 @@ TEST(LocalFrame, GravityVectorAgreesWithGeographicLib) {
 }
 
 }  // namespace
-}  // namespace foucault
+}  // namespace foucault::geodesy

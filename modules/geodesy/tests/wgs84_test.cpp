@@ -11,7 +11,7 @@
 
 #include "foucault/core/so3.h"
 
-namespace foucault::wgs84 {
+namespace foucault::geodesy::wgs84 {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
@@ -144,4 +144,4 @@ TEST(Wgs84, EarthRateIsTheAxisOfTheEarth) {
 }
 
 }  // namespace
-}  // namespace foucault::wgs84
+}  // namespace foucault::geodesy::wgs84

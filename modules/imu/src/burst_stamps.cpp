@@ -8,7 +8,7 @@
 
 #include "foucault/core/time.h"
 
-namespace foucault {
+namespace foucault::imu {
 namespace {
 
 constexpr double kShort = 0.25;       // of the mean interval
@@ -141,4 +141,4 @@ std::optional<std::string> BurstStamps::summary() const {
       1e3 * interval_s_);
 }
 
-}  // namespace foucault
+}  // namespace foucault::imu

@@ -9,7 +9,7 @@
 
 #include "foucault/core/error.h"
 
-namespace foucault {
+namespace foucault::imu {
 
 namespace {
 
@@ -149,4 +149,4 @@ SampleKind ImuOptions::sample_kind() const {
       fmt::format("imu.samples: unknown kind '{}'; use interval_mean or instantaneous", samples));
 }
 
-}  // namespace foucault
+}  // namespace foucault::imu

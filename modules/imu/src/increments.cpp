@@ -9,7 +9,7 @@
 #include "foucault/core/error.h"
 #include "foucault/core/time.h"
 
-namespace foucault {
+namespace foucault::imu {
 
 namespace {
 
@@ -111,4 +111,4 @@ Eigen::Vector3d velocity_with_sculling(const Eigen::Vector3d& previous_dtheta,
          (previous_dtheta.cross(dvel) + previous_dvel.cross(dtheta)) / 12;
 }
 
-}  // namespace foucault
+}  // namespace foucault::imu

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace foucault {
+namespace foucault::imu {
 
 void RecentRates::add(const ImuIncrement& increment) {
   const double dt = increment.dt();
@@ -12,4 +12,4 @@ void RecentRates::add(const ImuIncrement& increment) {
   accel_b += weight * (increment.dvel_b / dt - accel_b);
 }
 
-}  // namespace foucault
+}  // namespace foucault::imu

@@ -4,7 +4,7 @@
 #include "foucault/geodesy/place.h"
 #include "foucault/imu/increments.h"
 
-namespace foucault {
+namespace foucault::imu {
 namespace {
 
 /// Motion sensed by the IMU over an increment, relative to inertial space.
@@ -64,4 +64,4 @@ NavState advance(const NavState& state, const ImuIncrement& previous,
   return next;
 }
 
-}  // namespace foucault
+}  // namespace foucault::imu

@@ -7,7 +7,7 @@
 #include <limits>
 #include <random>
 
-namespace foucault {
+namespace foucault::imu {
 namespace {
 
 using ::testing::HasSubstr;
@@ -144,4 +144,4 @@ TEST(BurstStamps, FollowsARecordingThatChanges) {
 }
 
 }  // namespace
-}  // namespace foucault
+}  // namespace foucault::imu

@@ -6,7 +6,7 @@
 
 #include "foucault/core/error.h"
 
-namespace foucault {
+namespace foucault::imu {
 namespace {
 
 constexpr double kRounding = 1e-12;  // relative; the values are a few products of constants
@@ -121,4 +121,4 @@ TEST(ImuOptions, WrongValuesAreUsageErrors) {
 }
 
 }  // namespace
-}  // namespace foucault
+}  // namespace foucault::imu

@@ -10,7 +10,7 @@
 #include "foucault/core/so3.h"
 #include "foucault/core/time.h"
 
-namespace foucault {
+namespace foucault::imu {
 namespace {
 
 using Eigen::Matrix3d;
@@ -253,4 +253,4 @@ TEST(ConingAndSculling, ScaleMakesUnequalLengthsAsGoodAsEqualOnes) {
 }
 
 }  // namespace
-}  // namespace foucault
+}  // namespace foucault::imu

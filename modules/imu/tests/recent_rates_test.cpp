@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace foucault {
+namespace foucault::imu {
 namespace {
 
 using Eigen::Vector3d;
@@ -107,4 +107,4 @@ TEST(RecentRates, FollowATurn) {
 }
 
 }  // namespace
-}  // namespace foucault
+}  // namespace foucault::imu

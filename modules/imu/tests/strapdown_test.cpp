@@ -11,7 +11,7 @@
 #include "foucault/simulation/imu_simulator.h"
 #include "foucault/simulation/scenario.h"
 
-namespace foucault {
+namespace foucault::imu {
 namespace {
 
 constexpr double kDeg = 3.14159265358979323846 / 180;
@@ -206,4 +206,4 @@ TEST(Strapdown, BiasIsTakenOff) {
 }
 
 }  // namespace
-}  // namespace foucault
+}  // namespace foucault::imu

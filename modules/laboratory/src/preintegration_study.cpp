@@ -10,7 +10,7 @@
 #include "foucault/laboratory/ablated_integrator.h"
 #include "foucault/preintegration/preintegrator.h"
 
-namespace foucault {
+namespace foucault::laboratory {
 namespace {
 
 using Eigen::Vector3d;
@@ -323,4 +323,4 @@ MotionStudy PreintegrationStudy::summarize(const std::vector<Record>& records) c
   return study;
 }
 
-}  // namespace foucault
+}  // namespace foucault::laboratory

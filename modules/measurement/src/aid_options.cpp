@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace foucault {
+namespace foucault::measurement {
 
 void AidOptions::fields(ConfigFields& f) {
   f.text("mode", mode, {"auto", "none"},
@@ -18,4 +18,4 @@ void AidOptions::apply_to(GnssFix& fix) const {
     fix.velocity_covariance = std::pow(*gnss_velocity_sigma_m_s, 2) * Eigen::Matrix3d::Identity();
 }
 
-}  // namespace foucault
+}  // namespace foucault::measurement

@@ -3,7 +3,7 @@
 #include "foucault/core/so3.h"
 #include "foucault/geodesy/place.h"
 
-namespace foucault {
+namespace foucault::measurement {
 
 GnssPosition::GnssPosition(const GnssFix& fix)
     : antenna_(fix.antenna), p_b_a_(fix.p_b_a), covariance_n_(fix.position_covariance) {}
@@ -21,4 +21,4 @@ Linearized GnssPosition::linearize(const NavState& x, const Eigen::Vector3d& /*r
 
 ObservationPtr gnss_position(const GnssFix& fix) { return std::make_shared<GnssPosition>(fix); }
 
-}  // namespace foucault
+}  // namespace foucault::measurement

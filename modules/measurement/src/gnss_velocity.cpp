@@ -2,7 +2,7 @@
 
 #include "foucault/core/so3.h"
 
-namespace foucault {
+namespace foucault::measurement {
 
 GnssVelocity::GnssVelocity(const GnssFix& fix)
     : velocity_n_(*fix.velocity_n), p_b_a_(fix.p_b_a), covariance_n_(fix.velocity_covariance) {}
@@ -27,4 +27,4 @@ Linearized GnssVelocity::linearize(const NavState& x, const Eigen::Vector3d& rat
 
 ObservationPtr gnss_velocity(const GnssFix& fix) { return std::make_shared<GnssVelocity>(fix); }
 
-}  // namespace foucault
+}  // namespace foucault::measurement

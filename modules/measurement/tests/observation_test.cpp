@@ -16,7 +16,7 @@
 #include "foucault/measurement/gnss_velocity.h"
 #include "foucault/simulation/scenario.h"
 
-namespace foucault {
+namespace foucault::measurement {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
@@ -399,4 +399,4 @@ TEST(GnssVelocity, SeesTheScaleOfTheGyroscopes) {
 }
 
 }  // namespace
-}  // namespace foucault
+}  // namespace foucault::measurement

@@ -1,6 +1,6 @@
 #include "foucault/navigation/gap_options.h"
 
-namespace foucault {
+namespace foucault::navigation {
 
 void GapOptions::fields(ConfigFields& f) {
   f.number("max_gap_s", max_gap_s, kNotNegative,
@@ -11,4 +11,4 @@ void GapOptions::fields(ConfigFields& f) {
            "specific force in a hole against the one before it, 1 sigma");
 }
 
-}  // namespace foucault
+}  // namespace foucault::navigation

@@ -8,7 +8,7 @@
 #include "foucault/geodesy/course.h"
 #include "foucault/geodesy/local_frame.h"
 
-namespace foucault {
+namespace foucault::navigation {
 
 namespace {
 
@@ -137,4 +137,4 @@ ImuIncrement made_up_increment(const ImuHole& hole, const GapOptions& options, i
   return increment;
 }
 
-}  // namespace foucault
+}  // namespace foucault::navigation

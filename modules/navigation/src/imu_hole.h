@@ -9,7 +9,7 @@
 #include "foucault/navigation/gap_options.h"
 #include "foucault/state/result.h"
 
-namespace foucault {
+namespace foucault::navigation {
 
 /// Change of heading over a hole in the IMU data, positive to the right.
 struct HoleTurn {
@@ -43,4 +43,4 @@ std::optional<HoleTurn> turn_over(const ImuHole& hole, const std::deque<Measurem
 ImuIncrement made_up_increment(const ImuHole& hole, const GapOptions& options, int64_t t_begin_ns,
                                int64_t t_end_ns);
 
-}  // namespace foucault
+}  // namespace foucault::navigation

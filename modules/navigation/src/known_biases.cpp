@@ -2,7 +2,7 @@
 
 #include "foucault/state/kalman.h"
 
-namespace foucault {
+namespace foucault::navigation {
 namespace {
 
 /// The slow blocks as they were, so uncertain that the update decides about them; unless the
@@ -34,4 +34,4 @@ Epoch with_known_biases(const Epoch& aligned, const Epoch& earlier) {
   return out;
 }
 
-}  // namespace foucault
+}  // namespace foucault::navigation

@@ -2,10 +2,10 @@
 
 #include "foucault/state/epoch.h"
 
-namespace foucault {
+namespace foucault::navigation {
 
 /// A new alignment with what an earlier state knew of biases and slow blocks, its sigmas doubled
 /// and its correlations kept. A linear update, so that attitude and velocity get their share.
 Epoch with_known_biases(const Epoch& aligned, const Epoch& earlier);
 
-}  // namespace foucault
+}  // namespace foucault::navigation

@@ -27,7 +27,7 @@
 #include "prediction_probe.h"
 #include "sound_epoch.h"
 
-namespace foucault {
+namespace foucault::navigation {
 
 namespace {
 
@@ -704,4 +704,4 @@ std::string NavigationRun::unusable_fixes() const {
   return list;
 }
 
-}  // namespace foucault
+}  // namespace foucault::navigation

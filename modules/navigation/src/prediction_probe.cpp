@@ -5,7 +5,7 @@
 #include "foucault/core/time.h"
 #include "foucault/measurement/gnss_position.h"
 
-namespace foucault {
+namespace foucault::navigation {
 namespace {
 
 constexpr std::array<double, 3> kHorizonsS{5, 15, 30};
@@ -50,4 +50,4 @@ std::optional<PredictionResult> PredictionProbe::compare(const GnssFix& fix) {
   return result;
 }
 
-}  // namespace foucault
+}  // namespace foucault::navigation

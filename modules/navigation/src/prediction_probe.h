@@ -9,7 +9,7 @@
 #include "foucault/measurement/navigator.h"
 #include "foucault/state/result.h"
 
-namespace foucault {
+namespace foucault::navigation {
 
 /// Predicts fixes further ahead than the next one: now and then a copy of the navigator drives on
 /// without fixes, and those after 5, 15 and 30 s tell its errors by its own covariance. Probes
@@ -35,4 +35,4 @@ class PredictionProbe {
   std::optional<int64_t> due_ns_;  ///< when the next probe starts
 };
 
-}  // namespace foucault
+}  // namespace foucault::navigation

@@ -8,7 +8,7 @@
 #include "foucault/geodesy/place.h"
 #include "sound_epoch.h"
 
-namespace foucault {
+namespace foucault::navigation {
 namespace {
 
 template <class... F>
@@ -115,4 +115,4 @@ void Smoother::finish() {
   keeper_.give_out();
 }
 
-}  // namespace foucault
+}  // namespace foucault::navigation

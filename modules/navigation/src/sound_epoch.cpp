@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace foucault {
+namespace foucault::navigation {
 
 std::optional<std::string> unsound_part(const Epoch& epoch) {
   const Geodetic& p = epoch.position;
@@ -15,4 +15,4 @@ std::optional<std::string> unsound_part(const Epoch& epoch) {
   return std::nullopt;
 }
 
-}  // namespace foucault
+}  // namespace foucault::navigation

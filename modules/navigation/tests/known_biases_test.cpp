@@ -9,7 +9,7 @@
 #include "foucault/core/so3.h"
 #include "foucault/state/layout.h"
 
-namespace foucault {
+namespace foucault::navigation {
 namespace {
 
 using namespace block;
@@ -182,4 +182,4 @@ TEST(KnownBiases, SigmasStayWithinThePriorOverManyRestarts) {
 }
 
 }  // namespace
-}  // namespace foucault
+}  // namespace foucault::navigation

@@ -12,7 +12,7 @@
 #include "foucault/geodesy/local_frame.h"
 #include "test_drive.h"
 
-namespace foucault {
+namespace foucault::navigation {
 namespace {
 
 using Eigen::Vector3d;
@@ -821,4 +821,4 @@ TEST(GapOptions, RoundTripAndRanges) {
 }
 
 }  // namespace
-}  // namespace foucault
+}  // namespace foucault::navigation

@@ -11,7 +11,7 @@
 #include "foucault/core/time.h"
 #include "foucault/measurement/gnss_position.h"
 
-namespace foucault {
+namespace foucault::navigation {
 namespace {
 
 using ::testing::DoubleNear;
@@ -104,4 +104,4 @@ TEST(PredictionProbe, ANewStartEndsTheProbe) {
 }
 
 }  // namespace
-}  // namespace foucault
+}  // namespace foucault::navigation

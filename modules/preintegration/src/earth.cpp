@@ -1,6 +1,6 @@
 #include "foucault/preintegration/earth.h"
 
-namespace foucault {
+namespace foucault::preintegration {
 
 EarthModel earth_model(PreintegrationModel model, const LocalFrame& frame,
                        const Eigen::Vector3d& p_w) {
@@ -16,4 +16,4 @@ EarthModel earth_model(PreintegrationModel model, const LocalFrame& frame,
   return earth;
 }
 
-}  // namespace foucault
+}  // namespace foucault::preintegration

@@ -5,7 +5,7 @@
 
 #include "foucault/core/so3.h"
 
-namespace foucault {
+namespace foucault::preintegration {
 namespace {
 
 using Eigen::Matrix3d;
@@ -257,4 +257,4 @@ StateMatrix predict_covariance(const NodeState& x0, const NodeState& x1, const P
   return 0.5 * (P + P.transpose());
 }
 
-}  // namespace foucault
+}  // namespace foucault::preintegration

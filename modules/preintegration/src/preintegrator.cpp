@@ -8,7 +8,7 @@
 #include "foucault/core/time.h"
 #include "foucault/imu/increments.h"
 
-namespace foucault {
+namespace foucault::preintegration {
 namespace {
 
 using Eigen::Matrix3d;
@@ -265,4 +265,4 @@ Preintegration Preintegrator::result_with_bias_decay() const {
   return out;
 }
 
-}  // namespace foucault
+}  // namespace foucault::preintegration

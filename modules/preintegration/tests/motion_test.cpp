@@ -7,7 +7,7 @@
 #include "closed_form_motion.h"
 #include "foucault/imu/increments.h"
 
-namespace foucault {
+namespace foucault::preintegration {
 namespace {
 
 using Eigen::Matrix3d;
@@ -341,4 +341,4 @@ TEST(Motion, PredictedCovarianceWithSlowBlocksIsThatOfPerturbedPredictions) {
 }
 
 }  // namespace
-}  // namespace foucault
+}  // namespace foucault::preintegration

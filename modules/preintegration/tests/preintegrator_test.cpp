@@ -10,7 +10,7 @@
 #include "dense_preintegrator.h"
 #include "foucault/imu/increments.h"
 
-namespace foucault {
+namespace foucault::preintegration {
 namespace {
 
 using Eigen::Matrix3d;
@@ -292,4 +292,4 @@ TEST(Preintegrator, RefusesHolesAndEmptyIncrements) {
 }
 
 }  // namespace
-}  // namespace foucault
+}  // namespace foucault::preintegration

@@ -8,7 +8,7 @@
 #include "foucault/geodesy/local_frame.h"
 #include "foucault/simulation/random.h"
 
-namespace foucault {
+namespace foucault::simulation {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
@@ -305,4 +305,4 @@ double FaultySource::progress() const {
              : static_cast<double>(next_) / static_cast<double>(measurements_.size());
 }
 
-}  // namespace foucault
+}  // namespace foucault::simulation

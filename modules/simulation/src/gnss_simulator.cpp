@@ -2,7 +2,7 @@
 
 #include "foucault/geodesy/wgs84.h"
 
-namespace foucault {
+namespace foucault::simulation {
 namespace {
 
 /// Velocity of the antenna relative to the Earth, in the NED of the IMU [m/s].
@@ -54,4 +54,4 @@ GnssFix GnssSimulator::measure(const Motion& motion, int64_t t_ns, double t) {
   return fix;
 }
 
-}  // namespace foucault
+}  // namespace foucault::simulation

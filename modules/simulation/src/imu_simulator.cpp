@@ -5,7 +5,7 @@
 
 #include "foucault/core/time.h"
 
-namespace foucault {
+namespace foucault::simulation {
 namespace {
 
 constexpr double kLongestPiece = 0.01;  ///< [s]
@@ -95,4 +95,4 @@ ImuIncrement ImuErrors::apply(const ImuIncrement& exact) {
 
 ImuBias ImuErrors::bias() const { return {gyro_.bias(), accel_.bias()}; }
 
-}  // namespace foucault
+}  // namespace foucault::simulation

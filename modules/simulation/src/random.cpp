@@ -1,6 +1,6 @@
 #include "foucault/simulation/random.h"
 
-namespace foucault {
+namespace foucault::simulation {
 namespace {
 
 std::mt19937_64 engine_of(int64_t seed, RandomStream stream) {
@@ -25,4 +25,4 @@ double Draws::uniform(double low, double high) {
   return std::uniform_real_distribution<double>(low, high)(engine_);
 }
 
-}  // namespace foucault
+}  // namespace foucault::simulation

@@ -13,7 +13,7 @@
 #include "road_vehicle.h"
 #include "rollout.h"
 
-namespace foucault {
+namespace foucault::simulation {
 namespace {
 
 using simulation::Rollout;
@@ -152,4 +152,4 @@ Trajectory make_trajectory(const ScenarioOptions& options) {
   return follow(*rollout, options, scenario.knot_interval);
 }
 
-}  // namespace foucault
+}  // namespace foucault::simulation

@@ -7,7 +7,7 @@
 #include "foucault/core/error.h"
 #include "foucault/core/time.h"
 
-namespace foucault {
+namespace foucault::simulation {
 namespace {
 
 constexpr int64_t kResolution_ns = 100;
@@ -129,4 +129,4 @@ Epoch SimulatedSource::truth(int64_t t_ns) const {
   return epoch;
 }
 
-}  // namespace foucault
+}  // namespace foucault::simulation

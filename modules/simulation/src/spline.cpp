@@ -4,7 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
-namespace foucault {
+namespace foucault::simulation {
 namespace {
 
 using Weights = Eigen::Matrix<double, QuinticSpline::kControls, 1>;
@@ -67,4 +67,4 @@ QuinticSpline::Sample QuinticSpline::at(double t) const {
   return sample;
 }
 
-}  // namespace foucault
+}  // namespace foucault::simulation

@@ -4,7 +4,7 @@
 
 #include "foucault/geodesy/wgs84.h"
 
-namespace foucault {
+namespace foucault::simulation {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
@@ -95,4 +95,4 @@ Motion Trajectory::at(double t) const {
   return motion;
 }
 
-}  // namespace foucault
+}  // namespace foucault::simulation

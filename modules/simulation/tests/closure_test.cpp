@@ -9,7 +9,7 @@
 
 /// Free-inertial navigation over 60 s lands on the truth: what the simulator says about rates,
 /// forces, gravity and the Earth fits together, and its increments are their integrals.
-namespace foucault {
+namespace foucault::simulation {
 namespace {
 
 using namespace testing;
@@ -116,4 +116,4 @@ TEST(ClosureControl, NeedsConing) {
 }
 
 }  // namespace
-}  // namespace foucault
+}  // namespace foucault::simulation

@@ -8,7 +8,7 @@
 #include "foucault/geodesy/local_frame.h"
 #include "foucault/simulation/simulated_source.h"
 
-namespace foucault {
+namespace foucault::simulation {
 namespace {
 
 struct Recording {
@@ -115,4 +115,4 @@ TEST(Faults, OrderOfFixes) {
 }
 
 }  // namespace
-}  // namespace foucault
+}  // namespace foucault::simulation

@@ -7,7 +7,7 @@
 
 #include "foucault/geodesy/local_frame.h"
 
-namespace foucault {
+namespace foucault::simulation {
 namespace {
 
 GnssFix fix_at(const Trajectory& truth, const ScenarioOptions& options, double t) {
@@ -93,4 +93,4 @@ TEST(GnssSimulator, DegradesWithinItsWindow) {
 }
 
 }  // namespace
-}  // namespace foucault
+}  // namespace foucault::simulation

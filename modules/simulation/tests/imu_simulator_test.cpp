@@ -9,7 +9,7 @@
 #include "foucault/core/so3.h"
 #include "foucault/simulation/scenario.h"
 
-namespace foucault {
+namespace foucault::simulation {
 namespace {
 
 const Eigen::Quaterniond kSame = Eigen::Quaterniond::Identity();
@@ -212,4 +212,4 @@ TEST(ImuErrors, SwitchingOneOnLeavesTheDrawsOfTheOthers) {
 }
 
 }  // namespace
-}  // namespace foucault
+}  // namespace foucault::simulation

@@ -10,7 +10,7 @@
 #include "foucault/core/so3.h"
 #include "foucault/geodesy/local_frame.h"
 
-namespace foucault {
+namespace foucault::simulation {
 namespace {
 
 constexpr double kDeg = 3.14159265358979323846 / 180;
@@ -184,4 +184,4 @@ TEST(ScenarioOptions, SurviveYaml) {
 }
 
 }  // namespace
-}  // namespace foucault
+}  // namespace foucault::simulation

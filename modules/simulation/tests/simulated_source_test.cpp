@@ -8,7 +8,7 @@
 #include "foucault/core/error.h"
 #include "foucault/core/time.h"
 
-namespace foucault {
+namespace foucault::simulation {
 namespace {
 
 std::vector<Measurement> record(const ScenarioOptions& options, const ImuNoise& noise) {
@@ -159,4 +159,4 @@ TEST(SimulatedSource, RefusesNonsense) {
 }
 
 }  // namespace
-}  // namespace foucault
+}  // namespace foucault::simulation

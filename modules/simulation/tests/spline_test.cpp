@@ -5,7 +5,7 @@
 
 #include <random>
 
-namespace foucault {
+namespace foucault::simulation {
 namespace {
 
 std::vector<Eigen::Vector3d> random_controls(int count) {
@@ -76,4 +76,4 @@ TEST(QuinticSpline, RejectsWhatIsNoSpline) {
 }
 
 }  // namespace
-}  // namespace foucault
+}  // namespace foucault::simulation

@@ -12,7 +12,7 @@
 #include "foucault/geodesy/wgs84.h"
 #include "foucault/simulation/scenario.h"
 
-namespace foucault {
+namespace foucault::simulation {
 namespace {
 
 constexpr double kDeg = 3.14159265358979323846 / 180;
@@ -156,4 +156,4 @@ TEST(Trajectory, SplineAnglesAreRollPitchHeading) {
 }
 
 }  // namespace
-}  // namespace foucault
+}  // namespace foucault::simulation

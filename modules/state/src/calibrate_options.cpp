@@ -1,6 +1,6 @@
 #include "foucault/state/calibrate_options.h"
 
-namespace foucault {
+namespace foucault::state {
 
 void CalibrateOptions::fields(ConfigFields& f) {
   f.text("mode", mode, {"auto", "none"}, "auto: what is on below; none: nothing beside the biases");
@@ -24,4 +24,4 @@ Layout CalibrateOptions::layout() const {
   return layout;
 }
 
-}  // namespace foucault
+}  // namespace foucault::state

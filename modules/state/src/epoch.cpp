@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace foucault {
+namespace foucault::state {
 namespace {
 
 /// Of each row, what its sigma is to be multiplied by.
@@ -53,4 +53,4 @@ StateMatrix PackedSymmetric::full() const {
   return m;
 }
 
-}  // namespace foucault
+}  // namespace foucault::state

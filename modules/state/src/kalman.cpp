@@ -4,7 +4,7 @@
 
 #include "foucault/core/so3.h"
 
-namespace foucault {
+namespace foucault::state {
 
 Innovation innovation_of(const Linearized& z, const StateMatrix& covariance) {
   const auto HP = (z.H * covariance).eval();
@@ -33,4 +33,4 @@ void kalman_update(const LinearizedRows<kMostRows>& z, NavState& x, StateMatrix&
 template void kalman_update(const Linearized&, NavState&, StateMatrix&);
 template void kalman_update(const LinearizedState&, NavState&, StateMatrix&);
 
-}  // namespace foucault
+}  // namespace foucault::state

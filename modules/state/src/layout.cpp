@@ -3,7 +3,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace foucault {
+namespace foucault::state {
 
 Layout& Layout::add(const Block& block, double sigma, double tau) {
   if (find(block))
@@ -42,4 +42,4 @@ SlowMatrix Layout::prior() const {
   return P;
 }
 
-}  // namespace foucault
+}  // namespace foucault::state

@@ -3,7 +3,7 @@
 #include "foucault/core/so3.h"
 #include "foucault/geodesy/place.h"
 
-namespace foucault {
+namespace foucault::state {
 namespace {
 
 /// What both states have beside their place and velocity.
@@ -58,4 +58,4 @@ NodeVector boxminus(const NodeState& y, const NodeState& x) {
   return error;
 }
 
-}  // namespace foucault
+}  // namespace foucault::state

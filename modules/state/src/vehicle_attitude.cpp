@@ -1,6 +1,6 @@
 #include "foucault/state/vehicle_attitude.h"
 
-namespace foucault {
+namespace foucault::state {
 
 VehicleAttitude vehicle_attitude(const Epoch& epoch, const Mounting& mounting) {
   VehicleAttitude attitude;
@@ -14,4 +14,4 @@ VehicleAttitude vehicle_attitude(const Epoch& epoch, const Mounting& mounting) {
   return attitude;
 }
 
-}  // namespace foucault
+}  // namespace foucault::state

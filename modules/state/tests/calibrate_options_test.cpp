@@ -4,7 +4,7 @@
 
 #include "foucault/core/error.h"
 
-namespace foucault {
+namespace foucault::state {
 namespace {
 
 TEST(CalibrateOptions, NothingIsOnByItself) { EXPECT_EQ(CalibrateOptions().layout().size(), 15); }
@@ -72,4 +72,4 @@ TEST(CalibrateOptions, RefuseWhatTheyDoNotKnow) {
 }
 
 }  // namespace
-}  // namespace foucault
+}  // namespace foucault::state

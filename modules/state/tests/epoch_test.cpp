@@ -4,7 +4,7 @@
 
 #include "random_state.h"
 
-namespace foucault {
+namespace foucault::state {
 namespace {
 
 using namespace testing;
@@ -120,4 +120,4 @@ TEST(PackedSymmetric, KeepsTheLowerTriangle) {
 }
 
 }  // namespace
-}  // namespace foucault
+}  // namespace foucault::state

@@ -7,7 +7,7 @@
 
 #include "random_state.h"
 
-namespace foucault {
+namespace foucault::state {
 namespace {
 
 using namespace testing;
@@ -180,4 +180,4 @@ TEST(InnovationOf, IsThatOfSampledErrors) {
 }
 
 }  // namespace
-}  // namespace foucault
+}  // namespace foucault::state

@@ -6,7 +6,7 @@
 #include <limits>
 #include <stdexcept>
 
-namespace foucault {
+namespace foucault::state {
 namespace {
 
 constexpr Block kTwo{"two", 2, "m"};
@@ -147,4 +147,4 @@ TEST(Layout, PartsCoverAMatrix) {
 }
 
 }  // namespace
-}  // namespace foucault
+}  // namespace foucault::state

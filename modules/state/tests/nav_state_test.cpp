@@ -4,7 +4,7 @@
 
 #include "random_state.h"
 
-namespace foucault {
+namespace foucault::state {
 namespace {
 
 using namespace testing;
@@ -156,4 +156,4 @@ TEST(NodeState, BoxplusUndoesBoxminus) {
 }
 
 }  // namespace
-}  // namespace foucault
+}  // namespace foucault::state

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-namespace foucault {
+namespace foucault::state {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
@@ -67,4 +67,4 @@ TEST(VehicleAttitude, SigmaIsThatOfSampledAttitudes) {
 }
 
 }  // namespace
-}  // namespace foucault
+}  // namespace foucault::state

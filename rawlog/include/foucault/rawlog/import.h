@@ -17,7 +17,7 @@
 /// after the one before) throws DataError with file:line and a remedy, or is skipped and counted
 /// with `skip_bad_rows`. A log whose IMU and GNSS do not overlap in time throws DataError.
 /// Wrong options or mappings throw UsageError.
-namespace foucault {
+namespace foucault::rawlog {
 
 /// What all importers take.
 struct ImportOptions {
@@ -48,4 +48,4 @@ struct ImportSummary {
       Eigen::Vector3d::Zero();  ///< IMU to antenna, forward-right-down [m]
 };
 
-}  // namespace foucault
+}  // namespace foucault::rawlog

@@ -6,7 +6,7 @@
 #include "foucault/rawlog/import.h"
 #include "foucault/rawlog/import_mapping.h"
 
-namespace foucault {
+namespace foucault::rawlog {
 
 /// Tables of IMU, GNSS and reference, told by a mapping (import_mapping.h).
 struct CsvImport : ImportOptions {
@@ -18,4 +18,4 @@ struct CsvImport : ImportOptions {
 
 ImportSummary import_csv(const CsvImport& options);
 
-}  // namespace foucault
+}  // namespace foucault::rawlog

@@ -5,7 +5,7 @@
 
 #include "foucault/rawlog/import.h"
 
-namespace foucault {
+namespace foucault::rawlog {
 
 /// Text files of the i2Nav group (the paper's data), columns separated by blanks, '#' and '%' begin
 /// comments, plain or gzip. Times are GPS seconds of week.
@@ -27,4 +27,4 @@ struct I2navImport : ImportOptions {
 /// The seconds of week may run over into the next week within a log.
 ImportSummary import_i2nav(const I2navImport& options);
 
-}  // namespace foucault
+}  // namespace foucault::rawlog

@@ -11,7 +11,7 @@
 
 /// The YAML mapping of the importers `csv` and `rtklib`: names files, columns, units, axes and
 /// clocks of a recording.
-namespace foucault {
+namespace foucault::rawlog {
 
 /// How the `time` column becomes a stamp. true time = stamp + offset_s.
 class TimeMapping : public Configurable {
@@ -106,4 +106,4 @@ class ImportMapping : public Configurable {
   void fields(ConfigFields& f) override;
 };
 
-}  // namespace foucault
+}  // namespace foucault::rawlog

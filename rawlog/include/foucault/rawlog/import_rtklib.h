@@ -6,7 +6,7 @@
 #include "foucault/rawlog/import.h"
 #include "foucault/rawlog/import_mapping.h"
 
-namespace foucault {
+namespace foucault::rawlog {
 
 /// A solution of RTKLIB (.pos, latitude/longitude/height) and an IMU table told by a mapping.
 /// Of the mapping's `gnss` count: file, time.offset_s, height and geoid_separation_m (unless the
@@ -21,4 +21,4 @@ struct RtklibImport : ImportOptions {
 
 ImportSummary import_rtklib(const RtklibImport& options);
 
-}  // namespace foucault
+}  // namespace foucault::rawlog

@@ -11,7 +11,7 @@
 #include "foucault/core/measurement.h"
 #include "foucault/state/interfaces.h"
 
-namespace foucault {
+namespace foucault::rawlog {
 
 /// A hole in a stream: more than 1.5 median intervals between neighbouring stamps.
 struct Gap {
@@ -76,4 +76,4 @@ struct RawlogInfo {
 RawlogInfo read_rawlog_info(const std::string& path,
                             const std::function<void(double)>& progress = {});
 
-}  // namespace foucault
+}  // namespace foucault::rawlog

@@ -11,7 +11,7 @@
 #include "foucault/imu/imu_noise.h"
 #include "foucault/state/interfaces.h"
 
-namespace foucault {
+namespace foucault::rawlog {
 
 /// Section `rawlog` of the configuration: what is taken from a log with several sensors.
 class RawlogOptions : public Configurable {
@@ -100,4 +100,4 @@ struct NmeaSigma {
 };
 NmeaSigma nmea_sigma(FixQuality quality, std::optional<double> hdop);
 
-}  // namespace foucault
+}  // namespace foucault::rawlog

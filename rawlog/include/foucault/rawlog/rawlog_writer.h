@@ -9,7 +9,7 @@
 #include "foucault/imu/increments.h"
 #include "foucault/state/interfaces.h"
 
-namespace foucault {
+namespace foucault::rawlog {
 
 /// What a rawlog can hold of ours. Event requests are not written.
 using Record = std::variant<GnssFix, WheelSpeed, ReferencePose, ImuSample, ImuIncrement>;
@@ -60,4 +60,4 @@ class RawlogWriter {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace foucault
+}  // namespace foucault::rawlog

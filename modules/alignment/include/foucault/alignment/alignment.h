@@ -9,7 +9,7 @@
 #include "foucault/state/interfaces.h"
 #include "foucault/state/result.h"
 
-namespace foucault {
+namespace foucault::alignment {
 
 /// Section `alignment` of the configuration. Angles are the vehicle's (forward-right-down).
 class AlignmentOptions : public Configurable {
@@ -76,4 +76,4 @@ class Aligner {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace foucault
+}  // namespace foucault::alignment

@@ -15,7 +15,7 @@
 #include "foucault/state/result.h"
 #include "foucault/diagnosis/return_trial.h"
 
-namespace foucault {
+namespace foucault::diagnosis {
 
 /// Innovations in a row that do not pass the gate, as a straight line over time.
 struct InnovationLine {
@@ -151,4 +151,4 @@ class FixDoubt {
   DoubtOutcome outcome_;
 };
 
-}  // namespace foucault
+}  // namespace foucault::diagnosis

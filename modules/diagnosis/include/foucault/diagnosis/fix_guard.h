@@ -8,7 +8,7 @@
 
 #include "foucault/core/measurement.h"
 
-namespace foucault {
+namespace foucault::diagnosis {
 
 /// Tells where one position is given again and again under new stamps, as tables at the rate of the
 /// IMU do, or drivers that publish faster than the receiver measures: of the last ten positions,
@@ -75,4 +75,4 @@ class FixGuard {
   Tally no_position_, out_of_reach_, held_, bad_velocity_;
 };
 
-}  // namespace foucault
+}  // namespace foucault::diagnosis

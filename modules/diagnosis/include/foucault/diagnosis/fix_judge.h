@@ -7,7 +7,7 @@
 #include "foucault/diagnosis/gnss_options.h"
 #include "foucault/measurement/navigator.h"
 
-namespace foucault {
+namespace foucault::diagnosis {
 
 /// e' S^-1 e.
 double mahalanobis_squared(const Eigen::Vector3d& value, const Eigen::Matrix3d& covariance);
@@ -54,4 +54,4 @@ class FixJudge {
       1;  ///< mean normalized innovation squared of believed ones, over its expectation
 };
 
-}  // namespace foucault
+}  // namespace foucault::diagnosis

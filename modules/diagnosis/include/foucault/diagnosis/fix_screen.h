@@ -5,7 +5,7 @@
 
 #include "foucault/core/measurement.h"
 
-namespace foucault {
+namespace foucault::diagnosis {
 
 /// Tells, before there is a state to predict fixes from, which of them no vehicle reaches from
 /// their neighbours: those off a straight line between them by more than kAcceleration explains.
@@ -35,4 +35,4 @@ class FixScreen {
   std::optional<GnssFix> before_;  ///< the last plausible one
 };
 
-}  // namespace foucault
+}  // namespace foucault::diagnosis

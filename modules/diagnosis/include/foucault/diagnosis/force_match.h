@@ -10,7 +10,7 @@
 #include "foucault/core/measurement.h"
 #include "foucault/diagnosis/turn_match.h"
 
-namespace foucault {
+namespace foucault::diagnosis {
 
 /// Measures the factor of the accelerometers: the length of the specific force against that of the
 /// acceleration of the antenna minus gravity, over windows of three fixes a, m, b. The second
@@ -58,4 +58,4 @@ class ForceMatch {
 /// What is wrong with accelerometers of this factor; none if it may be one of a real IMU.
 std::optional<std::string> wrong_force_factor(const MeasuredFactor& factor);
 
-}  // namespace foucault
+}  // namespace foucault::diagnosis

@@ -6,7 +6,7 @@
 #include "foucault/core/config.h"
 #include "foucault/core/measurement.h"
 
-namespace foucault {
+namespace foucault::diagnosis {
 
 /// Section `gnss` of the configuration: which fixes are used, and how much they are trusted.
 class GnssOptions : public Configurable {
@@ -23,4 +23,4 @@ class GnssOptions : public Configurable {
   GnssFix weighted(const GnssFix& fix) const;
 };
 
-}  // namespace foucault
+}  // namespace foucault::diagnosis

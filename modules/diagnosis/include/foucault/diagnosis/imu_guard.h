@@ -8,7 +8,7 @@
 
 #include "foucault/core/measurement.h"
 
-namespace foucault {
+namespace foucault::diagnosis {
 
 /// Looks at increments before they are used.
 ///
@@ -85,4 +85,4 @@ class ImuGuard {
   bool noticed_ = false;
 };
 
-}  // namespace foucault
+}  // namespace foucault::diagnosis

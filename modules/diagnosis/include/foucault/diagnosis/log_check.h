@@ -11,7 +11,7 @@
 #include "foucault/state/result.h"
 
 /// Judges a recording before it is processed.
-namespace foucault {
+namespace foucault::diagnosis {
 
 enum class Severity { ok, warning, error };
 
@@ -83,4 +83,4 @@ class LogChecker {
 /// The judgement of facts alone.
 std::vector<Finding> judge(const LogFacts& facts, const ImuNoise& configured);
 
-}  // namespace foucault
+}  // namespace foucault::diagnosis

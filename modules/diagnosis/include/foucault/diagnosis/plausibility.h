@@ -7,7 +7,7 @@
 #include "foucault/core/measurement.h"
 #include "foucault/diagnosis/turn_match.h"
 
-namespace foucault {
+namespace foucault::diagnosis {
 
 /// What is wrong with a specific force whose mean has this length [m/s^2]; none if it may be
 /// gravity, as the mean of any vehicle's is.
@@ -40,4 +40,4 @@ class Plausibility {
   int64_t samples_looked_at_ = 0;
 };
 
-}  // namespace foucault
+}  // namespace foucault::diagnosis

@@ -7,7 +7,7 @@
 #include "foucault/core/measurement.h"
 #include "foucault/measurement/navigator.h"
 
-namespace foucault {
+namespace foucault::diagnosis {
 
 /// A fix is true, or an outlier, of which there is one in a hundred: which is likelier, and how
 /// likely that is.
@@ -73,4 +73,4 @@ class ReturnTrial {
   std::vector<Hypothesis> hypotheses_;
 };
 
-}  // namespace foucault
+}  // namespace foucault::diagnosis

@@ -10,7 +10,7 @@
 
 /// Do the gyroscopes turn when GNSS turns, as much, and the same way? Clocks, units and axes of a
 /// recording show in this, without any state.
-namespace foucault {
+namespace foucault::diagnosis {
 
 /// What a sensor measures per what it should.
 struct MeasuredFactor {
@@ -108,4 +108,4 @@ std::optional<std::string> gross_mismatch(const TurnMatch& match, int64_t t_ns);
 /// The part of it that is certain as soon as there is a TurnMatch: unit or scale of angular rates.
 std::optional<std::string> wrong_rates(const TurnMatch& match);
 
-}  // namespace foucault
+}  // namespace foucault::diagnosis

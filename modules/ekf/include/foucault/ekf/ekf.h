@@ -6,7 +6,7 @@
 #include "foucault/imu/recent_rates.h"
 #include "foucault/measurement/navigator.h"
 
-namespace foucault {
+namespace foucault::ekf {
 
 /// Section `ekf` of the configuration.
 class EkfOptions : public Configurable {
@@ -62,4 +62,4 @@ class EkfNavigator : public Navigator {
   ekf::MotionIntegrals integrals_;  ///< since then
 };
 
-}  // namespace foucault
+}  // namespace foucault::ekf

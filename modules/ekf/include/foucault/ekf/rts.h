@@ -8,7 +8,7 @@
 /// Rauch-Tung-Striebel smoothing of an EKF run.
 /// Source: Rauch, Tung, Striebel, AIAA Journal 3 (1965); in the error-state form of Shin (2005),
 /// 4.3: corrections are smoothed about the forward solution.
-namespace foucault {
+namespace foucault::ekf {
 
 /// The forward solution at one instant, and how it came there from the node before.
 struct RtsNode {
@@ -52,4 +52,4 @@ class RtsRecorder : public EkfNavigator, public Recording {
   ekf::Phi phi_;  ///< since the last node
 };
 
-}  // namespace foucault
+}  // namespace foucault::ekf

@@ -15,7 +15,7 @@
 #include "foucault/state/result.h"
 
 /// Whether errors are as large, and as random, as their covariances say.
-namespace foucault {
+namespace foucault::evaluation {
 
 /// z = C^-1/2 D^-1 error with the covariance D C D, D its sigmas, C the correlations, C^-1/2
 /// symmetric: z ~ N(0, I) if the covariance is right, z'z is the normalized square, and of all such
@@ -149,4 +149,4 @@ class ConsistencyCollector {
   std::vector<double> intervals_s_;  ///< the first ones
 };
 
-}  // namespace foucault
+}  // namespace foucault::evaluation

@@ -9,7 +9,7 @@
 
 /// Drift against the distance from the start of the recording. What a method takes as constant in a
 /// frame fixed at the start (gravity turns by 0.157 mrad per km) shows as drift that grows with it.
-namespace foucault {
+namespace foucault::evaluation {
 
 /// Nearer, the distance does not matter [km].
 constexpr double kFarKm = 10;
@@ -61,4 +61,4 @@ TextTable distance_table(const std::vector<DistanceProfile>& profiles,
 TextTable distance_difference_table(const std::vector<DistanceProfile>& profiles,
                                     const std::string& group_header);
 
-}  // namespace foucault
+}  // namespace foucault::evaluation

@@ -15,7 +15,7 @@
 #include "foucault/state/result.h"
 
 /// Drift: what the estimate errs by during an outage.
-namespace foucault {
+namespace foucault::evaluation {
 
 /// An error squared by the covariance that was given for it, over its degrees of freedom (2 and 1):
 /// 1 in the mean if that is right. Infinite where the estimate was not a number; NaN: no sigmas.
@@ -123,4 +123,4 @@ class FixTruth {
   std::deque<Truth> waiting_;
 };
 
-}  // namespace foucault
+}  // namespace foucault::evaluation

@@ -8,7 +8,7 @@
 #include "foucault/evaluation/statistics.h"
 
 /// The paper's tables, and drifts as text.
-namespace foucault {
+namespace foucault::evaluation {
 
 /// Cells as they are shown, one header row.
 struct TextTable {
@@ -69,4 +69,4 @@ struct DriftRecord {
 TextTable drift_record_table(const std::vector<DriftRecord>& records,
                              const std::vector<double>& marks_s);
 
-}  // namespace foucault
+}  // namespace foucault::evaluation

@@ -7,7 +7,7 @@
 
 #include "foucault/state/result.h"
 
-namespace foucault {
+namespace foucault::evaluation {
 
 /// An estimate and what it errs by, for figures.
 struct TrackPoint {
@@ -38,4 +38,4 @@ class ErrorTrack {
   std::vector<TrackPoint> points_;
 };
 
-}  // namespace foucault
+}  // namespace foucault::evaluation

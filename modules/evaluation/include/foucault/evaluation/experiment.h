@@ -12,7 +12,7 @@
 #include "foucault/state/interfaces.h"
 
 /// Many recordings x methods x shifted schedules, and what comes out of comparing them.
-namespace foucault {
+namespace foucault::evaluation {
 
 /// Opens a recording from its beginning; called on the thread of the run.
 using SourceFactory = std::function<std::unique_ptr<Source>()>;
@@ -99,4 +99,4 @@ std::vector<DriftRecord> drift_records(const std::vector<ExperimentResult>& resu
 /// "all recordings" if there are several of these.
 std::vector<MethodOutages> table_rows(const std::vector<ExperimentResult>& results);
 
-}  // namespace foucault
+}  // namespace foucault::evaluation

@@ -7,7 +7,7 @@
 #include <vector>
 
 /// Search over a grid of parameters, the paper's way of tuning.
-namespace foucault {
+namespace foucault::evaluation {
 
 /// Values of one parameter, as they are written in a configuration.
 struct GridAxis {
@@ -53,4 +53,4 @@ GridSearchResult coarse_to_fine_search(const ParameterGrid& grid, const BatchObj
 std::vector<std::vector<double>> profile(const ParameterGrid& grid, const GridSearchResult& result,
                                          std::size_t x, std::size_t y);
 
-}  // namespace foucault
+}  // namespace foucault::evaluation

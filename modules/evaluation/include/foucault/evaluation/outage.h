@@ -10,7 +10,7 @@
 #include "foucault/state/interfaces.h"
 
 /// Simulated GNSS outages: fixes are withheld from an estimator, which knows nothing of it.
-namespace foucault {
+namespace foucault::evaluation {
 
 /// Section `outages` of the configuration. Times count from the first GNSS fix. The paper: 60 s
 /// every 150 s after 500 s of initialization, each log twice with shifted starts.
@@ -87,4 +87,4 @@ class OutageSource : public Source {
   std::optional<Geodetic> first_position_;  ///< of the first fix that has one
 };
 
-}  // namespace foucault
+}  // namespace foucault::evaluation

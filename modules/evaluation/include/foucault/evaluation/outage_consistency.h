@@ -10,7 +10,7 @@
 
 /// What methods say of their errors in outages, and how they come back from them, pooled over
 /// outages.
-namespace foucault {
+namespace foucault::evaluation {
 
 /// Mean over outages of NormalizedSquares at one time of each.
 struct PooledSquares {
@@ -73,4 +73,4 @@ std::vector<PooledReturns> pooled_returns(const std::vector<MethodOutages>& outa
 
 TextTable return_table(const std::vector<PooledReturns>& returns, const std::string& group_header);
 
-}  // namespace foucault
+}  // namespace foucault::evaluation

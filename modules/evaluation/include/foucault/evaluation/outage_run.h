@@ -9,7 +9,7 @@
 #include "foucault/evaluation/reference_error.h"
 #include "foucault/state/interfaces.h"
 
-namespace foucault {
+namespace foucault::evaluation {
 
 /// What drifts are measured against.
 enum class DriftTruth { reference, withheld_fixes };
@@ -52,4 +52,4 @@ OutageRunResult run_with_outages(std::unique_ptr<Source> source, const OutageSch
                                  const OutageRunOptions& options = {},
                                  OutageRunObserver* observer = nullptr);
 
-}  // namespace foucault
+}  // namespace foucault::evaluation

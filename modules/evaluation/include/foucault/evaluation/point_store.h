@@ -8,7 +8,7 @@
 #include <vector>
 
 /// Results that outlive a kill: a CSV file to which each finished one is added for good.
-namespace foucault {
+namespace foucault::evaluation {
 
 /// Something that the results depend on, e.g. {"logs", hash}.
 struct Fingerprint {
@@ -60,4 +60,4 @@ class PointStore {
   std::map<Cells, Cells> rows_;
 };
 
-}  // namespace foucault
+}  // namespace foucault::evaluation

@@ -6,7 +6,7 @@
 #include "foucault/state/interfaces.h"
 #include "foucault/state/result.h"
 
-namespace foucault {
+namespace foucault::evaluation {
 
 /// The reference at t, a.t_ns <= t <= b.t_ns, a.t_ns < b.t_ns.
 /// Position: cubic Hermite if both have a velocity, else linear (both in Cartesian coordinates);
@@ -55,4 +55,4 @@ class ReferenceComparison {
   std::deque<Epoch> pending_;
 };
 
-}  // namespace foucault
+}  // namespace foucault::evaluation

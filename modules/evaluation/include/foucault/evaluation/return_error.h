@@ -11,7 +11,7 @@
 
 /// The return: what the estimate errs by once fixes are there again. An estimator that takes true
 /// fixes for false ones shows here, not in the outage.
-namespace foucault {
+namespace foucault::evaluation {
 
 /// How long the return lasts, from the first fix after an outage on; less if the next outage or
 /// the end of the recording comes before.
@@ -58,4 +58,4 @@ class ReturnCollector {
   std::deque<FixSigma> fixes_;         ///< from the last one not after the last error
 };
 
-}  // namespace foucault
+}  // namespace foucault::evaluation

@@ -13,7 +13,7 @@
 #include "foucault/state/interfaces.h"
 #include "foucault/state/result.h"
 
-namespace foucault {
+namespace foucault::evaluation {
 
 /// Fixes of a run. Root mean squares and mean NIS are over those from the start of the statistics
 /// on; the counts are over all.
@@ -129,4 +129,4 @@ class RunMetricsCollector : public Sink {
   ConsistencyCollector consistency_;
 };
 
-}  // namespace foucault
+}  // namespace foucault::evaluation

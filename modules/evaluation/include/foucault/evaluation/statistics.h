@@ -8,7 +8,7 @@
 
 /// Statistics of drifts over outages: samples are few, so each number has a bootstrap interval; and
 /// of correlated samples.
-namespace foucault {
+namespace foucault::evaluation {
 
 double root_mean_square(const std::vector<double>& values);
 double mean(const std::vector<double>& values);
@@ -71,4 +71,4 @@ std::vector<double> autocorrelation(const std::vector<double>& values, std::size
 /// grow (Geyer 1992, initial monotone sequence).
 double integrated_autocorrelation(const std::vector<double>& values);
 
-}  // namespace foucault
+}  // namespace foucault::evaluation

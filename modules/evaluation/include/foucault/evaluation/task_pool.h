@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <functional>
 
-namespace foucault {
+namespace foucault::evaluation {
 
 /// Tells how far a task is, 0 to 1, and ends it by an exception if the pool has been called off;
 /// cheap enough to call for every measurement.
@@ -21,4 +21,4 @@ void run_tasks(std::size_t count, int threads, const Task& task,
 /// Processors of the machine, at least 1.
 int processor_count();
 
-}  // namespace foucault
+}  // namespace foucault::evaluation

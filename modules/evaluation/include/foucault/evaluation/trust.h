@@ -9,7 +9,7 @@
 
 /// Whether a run can be believed, judged from what was kept: the innovations of used fixes and the
 /// states that were given out. How many fixes were rejected does not matter.
-namespace foucault {
+namespace foucault::evaluation {
 
 /// States that were given out.
 struct StateCount {
@@ -43,4 +43,4 @@ bool is_finite(const Epoch& epoch);
 /// innovations as these are worth lies with 99.9 %.
 Trust trust_in(const Consistency& consistency, const StateCount& states, const Aids& aids = {});
 
-}  // namespace foucault
+}  // namespace foucault::evaluation

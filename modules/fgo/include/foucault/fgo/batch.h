@@ -11,7 +11,7 @@
 #include "foucault/measurement/recording.h"
 
 /// Smoothing by one optimization over a whole log: the cost (48) with every node in the window.
-namespace foucault {
+namespace foucault::fgo {
 
 /// Section `batch` of the configuration.
 class BatchOptions : public Configurable {
@@ -74,4 +74,4 @@ class BatchRecorder final : public Navigator, public Recording {
   EarthModel earth_;
 };
 
-}  // namespace foucault
+}  // namespace foucault::fgo

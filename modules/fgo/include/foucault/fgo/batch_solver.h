@@ -10,7 +10,7 @@
 #include "foucault/state/epoch.h"
 
 /// The cost (48) over a whole log, minimized by eliminating its chain.
-namespace foucault {
+namespace foucault::fgo {
 
 /// A chain of nodes, each joined to the next by an interval: nodes.size() == intervals.size() + 1.
 struct BatchNode {
@@ -40,4 +40,4 @@ struct BatchSolution {
 BatchSolution solve(BatchChain& chain, const GraphContext& context, const FgoOptions& options,
                     const ImuNoise& noise);
 
-}  // namespace foucault
+}  // namespace foucault::fgo

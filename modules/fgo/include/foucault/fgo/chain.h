@@ -12,7 +12,7 @@
 /// Everything stays a square root, by Householder's QR. Normal equations would have to find what is
 /// known of a node as a difference of squares: an interval of a second knows a step to 0.1 mm, an
 /// outage of half an hour leaves a position to kilometres, and (1e-4 / 1e4)^2 is below rounding.
-namespace foucault {
+namespace foucault::fgo {
 
 /// Rows that say something of a node's tangent and the border's, d: cost |r + S d|^2 / 2.
 struct NodeInformation {
@@ -65,4 +65,4 @@ SquareRootPrior to_prior(const NodeInformation& information, const NodeState& at
 /// Throws std::runtime_error if they are not determined.
 StateMatrix covariance(const NodeInformation& information);
 
-}  // namespace foucault
+}  // namespace foucault::fgo

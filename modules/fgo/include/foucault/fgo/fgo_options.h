@@ -4,7 +4,7 @@
 
 #include "foucault/core/config.h"
 
-namespace foucault {
+namespace foucault::fgo {
 
 /// Section `fgo` of the configuration.
 class FgoOptions : public Configurable {
@@ -18,4 +18,4 @@ class FgoOptions : public Configurable {
   void fields(ConfigFields& f) override;
 };
 
-}  // namespace foucault
+}  // namespace foucault::fgo

@@ -6,7 +6,7 @@
 #include "foucault/preintegration/earth.h"
 #include "foucault/state/layout.h"
 
-namespace foucault {
+namespace foucault::fgo {
 
 /// What all nodes of a graph have in common.
 struct GraphContext {
@@ -21,4 +21,4 @@ Layout as_constants(const Layout& layout);
 /// Where the IMU's scale factors are among estimates, intervals are integrated at them.
 std::optional<ImuScale> scale_of(const Layout& layout, const SlowVector& slow);
 
-}  // namespace foucault
+}  // namespace foucault::fgo

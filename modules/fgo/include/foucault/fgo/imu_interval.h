@@ -7,7 +7,7 @@
 #include "foucault/fgo/graph_context.h"
 #include "foucault/fgo/preintegration_factor.h"
 
-namespace foucault {
+namespace foucault::fgo {
 
 /// Between a node and the next: the factor, and what it was integrated from.
 struct ImuInterval {
@@ -36,4 +36,4 @@ void loosen(ImuInterval& interval, const NodeState& begin, const NodeState& end,
 void reintegrate(ImuInterval& interval, const ImuBias& bias, const SlowVector& slow,
                  const ImuNoise& noise, const GraphContext& context);
 
-}  // namespace foucault
+}  // namespace foucault::fgo

@@ -6,7 +6,7 @@
 #include "foucault/fgo/state_block.h"
 #include "foucault/measurement/observation.h"
 
-namespace foucault {
+namespace foucault::fgo {
 
 /// An observation at a node.
 struct NodeObservation {
@@ -38,4 +38,4 @@ class ObservationFactor final : public ceres::CostFunction {
   const GraphContext* context_;
 };
 
-}  // namespace foucault
+}  // namespace foucault::fgo

@@ -8,7 +8,7 @@
 #include "foucault/preintegration/motion.h"
 #include "foucault/state/layout.h"
 
-namespace foucault {
+namespace foucault::fgo {
 
 /// Whitened rows of an interval: r + J_x0 d0 + J_x1 d1 + J_slow d_border.
 struct IntervalRows {
@@ -56,4 +56,4 @@ class PreintegrationFactor final : public ceres::CostFunction {
   Layout layout_;
 };
 
-}  // namespace foucault
+}  // namespace foucault::fgo

@@ -5,7 +5,7 @@
 #include "foucault/fgo/state_block.h"
 #include "foucault/fgo/whitened_rows.h"
 
-namespace foucault {
+namespace foucault::fgo {
 
 /// Square-root prior on a node and the border: cost |r + S ((x, slow) (-) (at, slow_at))|^2 / 2.
 /// What marginalization leaves, or an initial state with its covariance; {r_p, H_p} of (48).
@@ -33,4 +33,4 @@ class PriorFactor final : public ceres::CostFunction {
   SquareRootPrior prior_;
 };
 
-}  // namespace foucault
+}  // namespace foucault::fgo

@@ -13,7 +13,7 @@
 /// the tangent of NodeVector. One block a node, since all factors touch whole nodes: the solver
 /// then keeps an eighth of the bookkeeping of one with p, v, q and biases apart. The border is
 /// another block, the last of a factor's.
-namespace foucault {
+namespace foucault::fgo {
 
 constexpr int kStateBlockSize = 16;
 using StateBlock = std::array<double, kStateBlockSize>;
@@ -66,4 +66,4 @@ class StateManifold final : public ceres::Manifold {
   bool MinusJacobian(const double* x, double* jacobian) const override;
 };
 
-}  // namespace foucault
+}  // namespace foucault::fgo

@@ -2,7 +2,7 @@
 
 #include "foucault/state/kalman.h"
 
-namespace foucault {
+namespace foucault::fgo {
 
 /// Rows that say something of a node's tangent and of the border: cost |r + J d|^2 / 2 with
 /// d = (node, border). The border are the slow blocks, which all nodes of a graph share.
@@ -14,4 +14,4 @@ struct WhitenedRows {
 using ObservationRows = WhitenedRows<kMostMeasured>;
 using StateRows = WhitenedRows<StateVector::MaxRowsAtCompileTime>;
 
-}  // namespace foucault
+}  // namespace foucault::fgo

@@ -13,7 +13,7 @@
 #include "foucault/imu/recent_rates.h"
 #include "foucault/measurement/navigator.h"
 
-namespace foucault {
+namespace foucault::fgo {
 
 /// GNSS/INS by sliding-window factor graph optimization, paper section IV.
 ///
@@ -102,4 +102,4 @@ class WindowNavigator final : public Navigator {
   StateMatrix covariance_;  ///< of the newest node and the border
 };
 
-}  // namespace foucault
+}  // namespace foucault::fgo

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 
 /// Course over ground and its sigma. Vectors are north, east, down, or of any level frame.
-namespace foucault {
+namespace foucault::geodesy {
 
 /// Azimuth [rad] of a vector's horizontal part.
 double azimuth(const Eigen::Vector3d& vector);
@@ -16,4 +16,4 @@ double horizontal_sigma(const Eigen::Matrix3d& covariance);
 /// Sigma [rad] of the azimuth of a way or velocity with this covariance.
 double course_sigma(const Eigen::Matrix3d& covariance, const Eigen::Vector3d& way);
 
-}  // namespace foucault
+}  // namespace foucault::geodesy

@@ -4,7 +4,7 @@
 
 #include "foucault/core/measurement.h"
 
-namespace foucault {
+namespace foucault::geodesy {
 
 /// The world frame w: North-East-Down at an origin, fixed to the Earth, Cartesian.
 /// Everything goes through ECEF, so nothing in it is flat: heights and directions far from the
@@ -47,4 +47,4 @@ class LocalFrame {
 /// heights [m], so that a horizontal distance d does not show as a height of d^2 / 2R.
 Eigen::Vector3d ned_offset(const Geodetic& from, const Geodetic& to);
 
-}  // namespace foucault
+}  // namespace foucault::geodesy

@@ -7,7 +7,7 @@
 /// The local North-East-Down frame n of a place, in curvilinear coordinates. Units rad, m, s.
 /// Source: Groves, "Principles of GNSS, Inertial and Multisensor Integrated Navigation Systems"
 /// (2013), ch. 2 and 5.
-namespace foucault {
+namespace foucault::geodesy {
 
 /// What the Earth does to a body at one place; everything that depends on the position alone.
 struct Place {
@@ -34,4 +34,4 @@ Geodetic displaced(const Geodetic& position, const Eigen::Vector3d& d_n, const P
 /// Its inverse: north, east, down [m] from `from` to `to`, over +-180 deg if that is shorter.
 Eigen::Vector3d displacement_n(const Geodetic& from, const Geodetic& to, const Place& place);
 
-}  // namespace foucault
+}  // namespace foucault::geodesy

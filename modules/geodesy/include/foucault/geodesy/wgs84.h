@@ -7,7 +7,7 @@
 /// WGS-84: ellipsoid, normal gravity, Earth rate.
 /// Frames: e = ECEF [m]; n = North-East-Down at the given latitude and longitude.
 /// Source: NIMA TR8350.2 (2000), chapters 3 and 4.
-namespace foucault::wgs84 {
+namespace foucault::geodesy::wgs84 {
 
 constexpr double kSemiMajorAxis = 6378137.0;         ///< a [m]
 constexpr double kFlattening = 1.0 / 298.257223563;  ///< f
@@ -38,4 +38,4 @@ GravitySlope normal_gravity_slope(double latitude, double height);
 /// omega_ie in n [rad/s]. Paper (10).
 Eigen::Vector3d earth_rate_n(double latitude);
 
-}  // namespace foucault::wgs84
+}  // namespace foucault::geodesy::wgs84

@@ -8,7 +8,7 @@
 
 #include "foucault/imu/increments.h"
 
-namespace foucault {
+namespace foucault::imu {
 
 /// How samples come in bursts.
 struct BurstPattern {
@@ -57,4 +57,4 @@ class BurstStamps {
   double interval_s_ = 0;
 };
 
-}  // namespace foucault
+}  // namespace foucault::imu

@@ -5,7 +5,7 @@
 
 #include "foucault/core/config.h"
 
-namespace foucault {
+namespace foucault::imu {
 
 /// Error model of an IMU, paper (31)-(32): white noise, and biases that are first-order
 /// Gauss-Markov processes about an unknown turn-on value.
@@ -61,4 +61,4 @@ std::vector<std::string> imu_preset_names();
 /// Throws UsageError naming the known ones.
 ImuNoise imu_preset(const std::string& name);
 
-}  // namespace foucault
+}  // namespace foucault::imu

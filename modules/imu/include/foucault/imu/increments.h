@@ -8,7 +8,7 @@
 #include "foucault/core/measurement.h"
 #include "foucault/imu/imu_noise.h"
 
-namespace foucault {
+namespace foucault::imu {
 
 /// A raw IMU sample in b.
 struct ImuSample {
@@ -66,4 +66,4 @@ constexpr double previous_increment_scale(double previous_dt, double dt) {
   return 2 * dt * dt / (previous_dt * (previous_dt + dt));
 }
 
-}  // namespace foucault
+}  // namespace foucault::imu

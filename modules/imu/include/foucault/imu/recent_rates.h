@@ -4,7 +4,7 @@
 
 #include "foucault/core/measurement.h"
 
-namespace foucault {
+namespace foucault::imu {
 
 /// Means of what the IMU measured over the last seconds, not compensated.
 struct RecentRates {
@@ -20,4 +20,4 @@ struct RecentRates {
 /// one to the next by more than the motion does, and short against any turn.
 constexpr double kLeverArmRateMemory = 0.05;  // [s]
 
-}  // namespace foucault
+}  // namespace foucault::imu

@@ -12,7 +12,7 @@
 /// Groves, "Principles of GNSS, Inertial and Multisensor Integrated Navigation Systems" (2013),
 /// ch. 5; Shin, "Estimation Techniques for Low-Cost Inertial Navigation" (2005), ch. 2.
 /// Units rad, m, s.
-namespace foucault {
+namespace foucault::imu {
 
 /// The increment without the biases' share.
 ImuIncrement without_bias(const ImuIncrement& increment, const ImuBias& bias);
@@ -27,4 +27,4 @@ ImuIncrement without_scale(const ImuIncrement& increment, const ImuScale& scale)
 NavState advance(const NavState& state, const ImuIncrement& previous,
                  const ImuIncrement& increment);
 
-}  // namespace foucault
+}  // namespace foucault::imu

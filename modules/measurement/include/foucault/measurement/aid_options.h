@@ -6,7 +6,7 @@
 #include "foucault/core/config.h"
 #include "foucault/core/measurement.h"
 
-namespace foucault {
+namespace foucault::measurement {
 
 /// Section `aids` of the configuration: what is measured beside positions.
 class AidOptions : public Configurable {
@@ -21,4 +21,4 @@ class AidOptions : public Configurable {
   bool uses_gnss_velocity() const { return mode != "none" && gnss_velocity == "on"; }
 };
 
-}  // namespace foucault
+}  // namespace foucault::measurement

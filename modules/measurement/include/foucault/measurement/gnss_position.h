@@ -3,7 +3,7 @@
 #include "foucault/core/measurement.h"
 #include "foucault/measurement/observation.h"
 
-namespace foucault {
+namespace foucault::measurement {
 
 /// Position of the antenna, p + C l; paper (50).
 /// p_a = p + C exp(d) l, hence d(p_a) = dp - C [l x] d.
@@ -23,4 +23,4 @@ class GnssPosition final : public Observation {
 
 ObservationPtr gnss_position(const GnssFix& fix);
 
-}  // namespace foucault
+}  // namespace foucault::measurement

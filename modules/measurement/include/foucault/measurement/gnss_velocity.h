@@ -3,7 +3,7 @@
 #include "foucault/core/measurement.h"
 #include "foucault/measurement/observation.h"
 
-namespace foucault {
+namespace foucault::measurement {
 
 /// Velocity of the antenna, v + C (omega x l), omega = (rate_b - bias) / (1 + scale) by axis.
 /// d(v_a) = dv - C [(omega x l) x] d + C [l x] (dbg + omega dscale) / (1 + scale). The rotation of
@@ -25,4 +25,4 @@ class GnssVelocity final : public Observation {
 
 ObservationPtr gnss_velocity(const GnssFix& fix);
 
-}  // namespace foucault
+}  // namespace foucault::measurement

@@ -7,7 +7,7 @@
 #include "foucault/measurement/observation.h"
 #include "foucault/state/epoch.h"
 
-namespace foucault {
+namespace foucault::measurement {
 
 /// What an integration filter does once it has an initial state. The driver (NavigationRun) deals
 /// with alignment, splitting, gaps, gating and output, the same for every method.
@@ -46,4 +46,4 @@ class Navigator {
   virtual Epoch epoch() const = 0;
 };
 
-}  // namespace foucault
+}  // namespace foucault::measurement

@@ -7,7 +7,7 @@
 #include "foucault/state/kalman.h"
 #include "foucault/state/layout.h"
 
-namespace foucault {
+namespace foucault::measurement {
 
 /// Something that was measured at one stamp, as a function of the state there. One class each; the
 /// filter, the smoothers and the graphs use it unchanged.
@@ -27,4 +27,4 @@ class Observation {
 
 using ObservationPtr = std::shared_ptr<const Observation>;
 
-}  // namespace foucault
+}  // namespace foucault::measurement

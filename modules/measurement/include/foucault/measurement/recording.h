@@ -5,7 +5,7 @@
 
 #include "foucault/state/epoch.h"
 
-namespace foucault {
+namespace foucault::measurement {
 
 /// The solution at a node from everything measured.
 struct SmoothedEpoch {
@@ -33,4 +33,4 @@ class Recording {
   virtual std::deque<SmoothedEpoch> smoothed() = 0;
 };
 
-}  // namespace foucault
+}  // namespace foucault::measurement

@@ -2,7 +2,7 @@
 
 #include "foucault/core/config.h"
 
-namespace foucault {
+namespace foucault::navigation {
 
 /// Section `gaps` of the configuration: how holes in the IMU stream are bridged. Over a hole the
 /// rates are interpolated between its ends, turned by what the courses before and after it tell;
@@ -16,4 +16,4 @@ class GapOptions : public Configurable {
   void fields(ConfigFields& f) override;
 };
 
-}  // namespace foucault
+}  // namespace foucault::navigation

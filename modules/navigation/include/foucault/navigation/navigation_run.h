@@ -16,8 +16,7 @@
 #include "foucault/navigation/gap_options.h"
 #include "foucault/state/interfaces.h"
 
-namespace foucault {
-
+namespace foucault::diagnosis {
 class FixDoubt;
 class FixGuard;
 class FixJudge;
@@ -25,6 +24,10 @@ class FixScreen;
 class ImuGuard;
 class Plausibility;
 struct FixDecision;
+}  // namespace foucault::diagnosis
+
+namespace foucault::navigation {
+
 class PredictionProbe;
 struct ImuHole;
 
@@ -194,4 +197,4 @@ class NavigationRun : public Estimator {
   Counts counts_;
 };
 
-}  // namespace foucault
+}  // namespace foucault::navigation

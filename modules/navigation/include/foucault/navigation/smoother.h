@@ -10,7 +10,7 @@
 #include "foucault/state/interfaces.h"
 
 /// Smoothing: a forward run that leaves nodes, and afterwards every epoch from all fixes.
-namespace foucault {
+namespace foucault::navigation {
 
 /// The smoothed solution between two neighbouring nodes, where the forward run had `forward`: the
 /// errors found after `begin` and before `end` are interpolated, that of the position to the third
@@ -81,4 +81,4 @@ std::unique_ptr<Estimator> make_smoother(std::unique_ptr<Recorder> recorder, Ali
                                     sink);
 }
 
-}  // namespace foucault
+}  // namespace foucault::navigation

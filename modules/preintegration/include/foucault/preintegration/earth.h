@@ -4,7 +4,7 @@
 
 #include "foucault/geodesy/local_frame.h"
 
-namespace foucault {
+namespace foucault::preintegration {
 
 /// What the preintegration models differ in; the integration itself is the same code.
 enum class PreintegrationModel {
@@ -31,4 +31,4 @@ struct EarthModel {
 EarthModel earth_model(PreintegrationModel model, const LocalFrame& frame,
                        const Eigen::Vector3d& p_w);
 
-}  // namespace foucault
+}  // namespace foucault::preintegration

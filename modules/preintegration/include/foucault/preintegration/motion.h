@@ -8,7 +8,7 @@
 #include "foucault/state/layout.h"
 #include "foucault/state/nav_state.h"
 
-namespace foucault {
+namespace foucault::preintegration {
 
 /// Rows of a node by the axes of the IMU.
 using NodeByAxis = NodeBy<3>;
@@ -65,4 +65,4 @@ StateMatrix predict_covariance(const NodeState& x0, const NodeState& x1, const P
                                const EarthModel& earth, const StateMatrix& covariance_x0,
                                const Layout& layout = {}, const SlowVector& slow = SlowVector(0));
 
-}  // namespace foucault
+}  // namespace foucault::preintegration

@@ -8,7 +8,7 @@
 #include "foucault/imu/imu_noise.h"
 #include "foucault/state/blocks.h"
 
-namespace foucault {
+namespace foucault::preintegration {
 
 /// How the deltas change by one block, to first order, (44): at block + d they are dp + J.dp d,
 /// dv + J.dv d and dq * exp(J.dq d).
@@ -133,4 +133,4 @@ class Preintegrator {
   double accel_bias_decay_ = 1;
 };
 
-}  // namespace foucault
+}  // namespace foucault::preintegration

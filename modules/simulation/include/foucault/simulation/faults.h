@@ -9,7 +9,7 @@
 #include "foucault/state/interfaces.h"
 
 /// What goes wrong with real recordings, for simulated ones.
-namespace foucault {
+namespace foucault::simulation {
 
 enum class FaultKind {
   // Fixes. `size` is in metres unless it says otherwise.
@@ -72,4 +72,4 @@ class FaultySource : public Source {
   std::size_t next_ = 0;
 };
 
-}  // namespace foucault
+}  // namespace foucault::simulation

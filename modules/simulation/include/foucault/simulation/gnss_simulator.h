@@ -4,7 +4,7 @@
 #include "foucault/simulation/random.h"
 #include "foucault/simulation/scenario.h"
 
-namespace foucault {
+namespace foucault::simulation {
 
 /// GNSS fixes of an antenna on a lever arm: true antenna position (and velocity if asked for) plus
 /// white noise; the covariance reported is that of the noise. Quality: fixed_rtk, or float_rtk
@@ -25,4 +25,4 @@ class GnssSimulator {
   Draws position_draws_, velocity_draws_;
 };
 
-}  // namespace foucault
+}  // namespace foucault::simulation

@@ -10,7 +10,7 @@
 #include "foucault/simulation/trajectory.h"
 #include "foucault/state/blocks.h"
 
-namespace foucault {
+namespace foucault::simulation {
 
 /// What a perfect IMU of axes b gives over (t_begin, t_end]:
 ///   dtheta_b = integral of omega_ib_b dt [rad], dvel_b = integral of f_b dt [m/s],
@@ -59,4 +59,4 @@ class ImuErrors {
   Triad gyro_, accel_;
 };
 
-}  // namespace foucault
+}  // namespace foucault::simulation

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <random>
 
-namespace foucault {
+namespace foucault::simulation {
 
 /// What a stream of random numbers is for. Each has a generator of its own, so that switching one
 /// error on or off leaves the draws of the others as they are.
@@ -40,4 +40,4 @@ class Draws {
   std::normal_distribution<double> normal_;
 };
 
-}  // namespace foucault
+}  // namespace foucault::simulation

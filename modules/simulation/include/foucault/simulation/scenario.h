@@ -9,7 +9,7 @@
 #include "foucault/core/measurement.h"
 #include "foucault/simulation/trajectory.h"
 
-namespace foucault {
+namespace foucault::simulation {
 
 /// A simulated trip and its sensors (all but the IMU's noise, which is an ImuNoise).
 /// Units in the keys; "after start" counts from gps_week and gps_sow_s.
@@ -59,4 +59,4 @@ std::vector<std::string> scenario_names();
 /// The same options give the same motion. Throws UsageError for an unknown name.
 Trajectory make_trajectory(const ScenarioOptions& options);
 
-}  // namespace foucault
+}  // namespace foucault::simulation

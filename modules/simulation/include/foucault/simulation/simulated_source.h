@@ -9,7 +9,7 @@
 #include "foucault/state/interfaces.h"
 #include "foucault/state/result.h"
 
-namespace foucault {
+namespace foucault::simulation {
 
 /// Stamps at a fixed rate, rounded to 100 ns (the resolution of MRPT's clock) without drift.
 class StampSequence {
@@ -71,4 +71,4 @@ class SimulatedSource : public Source {
   int64_t now_ns_;
 };
 
-}  // namespace foucault
+}  // namespace foucault::simulation

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-namespace foucault {
+namespace foucault::simulation {
 
 /// Uniform B-spline of degree 5 through 3-D control points: C4, its derivatives exact.
 /// Control point k belongs to the time (k - 2) * knot_interval; the spline passes near it, not
@@ -40,4 +40,4 @@ class QuinticSpline {
   std::vector<Eigen::Vector3d> controls_;
 };
 
-}  // namespace foucault
+}  // namespace foucault::simulation

@@ -6,7 +6,7 @@
 #include "foucault/core/measurement.h"
 #include "foucault/simulation/spline.h"
 
-namespace foucault {
+namespace foucault::simulation {
 
 /// True motion of the IMU centre at one instant.
 /// Frames: e ECEF, n North-East-Down of the place, v vehicle (forward-right-down), i inertial.
@@ -56,4 +56,4 @@ class Trajectory {
   Vibration vibration_;
 };
 
-}  // namespace foucault
+}  // namespace foucault::simulation

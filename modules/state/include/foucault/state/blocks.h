@@ -8,7 +8,7 @@
 /// The list of all that can be estimated, the one home of sizes and offsets. Every state holds
 /// position, velocity, attitude and the biases of the IMU, the blocks of a node; behind them come
 /// the slow blocks that a Layout has, in its order.
-namespace foucault {
+namespace foucault::state {
 
 /// Something that is estimated: a short vector with a name. Blocks of one name are the same.
 struct Block {
@@ -133,4 +133,4 @@ struct ImuScale {
   Eigen::Vector3d accel = Eigen::Vector3d::Zero();
 };
 
-}  // namespace foucault
+}  // namespace foucault::state

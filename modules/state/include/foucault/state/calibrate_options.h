@@ -5,7 +5,7 @@
 #include "foucault/core/config.h"
 #include "foucault/state/layout.h"
 
-namespace foucault {
+namespace foucault::state {
 
 /// Section `calibrate` of the configuration: which slow blocks are estimated.
 class CalibrateOptions : public Configurable {
@@ -23,4 +23,4 @@ class CalibrateOptions : public Configurable {
   Layout layout() const;
 };
 
-}  // namespace foucault
+}  // namespace foucault::state

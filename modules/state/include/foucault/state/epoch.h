@@ -5,7 +5,7 @@
 #include "foucault/state/layout.h"
 #include "foucault/state/nav_state.h"
 
-namespace foucault {
+namespace foucault::state {
 
 /// An estimate: a state and the covariance of its error. Of what has no slow blocks the covariance
 /// is that of a node.
@@ -35,4 +35,4 @@ class PackedSymmetric {
   std::vector<double> lower_;  ///< rows of the lower triangle
 };
 
-}  // namespace foucault
+}  // namespace foucault::state

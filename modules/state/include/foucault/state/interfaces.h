@@ -7,7 +7,7 @@
 
 /// The three roles data walks through: Source -> Estimator -> Sink. Each streams: memory does not
 /// grow with the length of a log.
-namespace foucault {
+namespace foucault::state {
 
 /// How the IMU sits in the vehicle.
 struct Mounting {
@@ -49,4 +49,4 @@ class Estimator {
   virtual void finish() = 0;
 };
 
-}  // namespace foucault
+}  // namespace foucault::state

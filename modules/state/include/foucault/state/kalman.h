@@ -3,7 +3,7 @@
 #include "foucault/state/nav_state.h"
 
 /// The Kalman update.
-namespace foucault {
+namespace foucault::state {
 
 /// A linearized measurement: r = H error + noise, R the noise's covariance. r is measured minus
 /// predicted, the columns of H are the rows of a state.
@@ -37,4 +37,4 @@ Innovation innovation_of(const Linearized& z, const StateMatrix& covariance);
 template <int kMostRows>
 void kalman_update(const LinearizedRows<kMostRows>& z, NavState& x, StateMatrix& covariance);
 
-}  // namespace foucault
+}  // namespace foucault::state

@@ -6,7 +6,7 @@
 
 #include "foucault/state/blocks.h"
 
-namespace foucault {
+namespace foucault::state {
 
 /// A slow block as it is estimated: a constant, or a first-order Gauss-Markov process.
 struct SlowBlock {
@@ -59,4 +59,4 @@ class Layout {
   int slow_size_ = 0;
 };
 
-}  // namespace foucault
+}  // namespace foucault::state

@@ -9,7 +9,7 @@
 
 /// States and their errors. An error is true minus estimated; state (+) error is the true state,
 /// and x (+) (y (-) x) = y.
-namespace foucault {
+namespace foucault::state {
 
 /// State of the IMU's centre in the local North-East-Down n of its own place.
 /// Error: position in metres north, east, down along the ellipsoid, the rest as blocks.h has it.
@@ -39,4 +39,4 @@ struct NodeState {
 NodeState boxplus(const NodeState& x, const NodeVector& error);
 NodeVector boxminus(const NodeState& y, const NodeState& x);
 
-}  // namespace foucault
+}  // namespace foucault::state

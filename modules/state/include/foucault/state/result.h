@@ -11,7 +11,7 @@
 #include "foucault/state/epoch.h"
 
 /// What estimators give out, as plain values.
-namespace foucault {
+namespace foucault::state {
 
 /// corrected: used less an error that it shares with its neighbours.
 enum class FixVerdict { used, bad_sigma, gated, low_quality, out_of_order, corrected };
@@ -62,4 +62,4 @@ struct ReferenceError {
   std::optional<Eigen::Vector3d> euler;                  ///< roll, pitch, heading [rad], wrapped
 };
 
-}  // namespace foucault
+}  // namespace foucault::state

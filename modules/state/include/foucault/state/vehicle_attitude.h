@@ -7,7 +7,7 @@
 #include "foucault/state/interfaces.h"
 #include "foucault/state/result.h"
 
-namespace foucault {
+namespace foucault::state {
 
 /// Attitude of the vehicle (forward-right-down) in the local North-East-Down, from an epoch, whose
 /// attitude is the IMU's.
@@ -21,4 +21,4 @@ struct VehicleAttitude {
 /// q_n_v = q_n_b * q_v_b^-1; the perturbation turns as dtheta_v = R_v_b dtheta_b.
 VehicleAttitude vehicle_attitude(const Epoch& epoch, const Mounting& mounting);
 
-}  // namespace foucault
+}  // namespace foucault::state
