@@ -1,45 +1,26 @@
 #pragma once
 
-#include <cstdint>
 #include <deque>
-#include <map>
 #include <memory>
 #include <optional>
-#include <string>
 #include <variant>
 
 #include "foucault/alignment/alignment.h"
-#include "foucault/diagnosis/gnss_options.h"
-#include "foucault/imu/recent_rates.h"
-#include "foucault/measurement/aid_options.h"
 #include "foucault/measurement/navigator.h"
-#include "foucault/navigation/gap_options.h"
+#include "foucault/navigation/run_options.h"
 #include "foucault/state/interfaces.h"
-
-namespace foucault::diagnosis {
-class FixDoubt;
-class FixGuard;
-class FixJudge;
-class FixScreen;
-class ImuGuard;
-class Plausibility;
-struct FixDecision;
-}  // namespace foucault::diagnosis
 
 namespace foucault::navigation {
 
-class PredictionProbe;
-struct ImuHole;
-
-enum class EpochRate { epochs, imu };
-
-struct NavigationRunOptions {
-  GnssOptions gnss;
-  GapOptions gaps;
-  AidOptions aids;
-  double node_interval_s = 1;  ///< longest time between nodes, see Navigator::hold()
-  EpochRate rate = EpochRate::epochs;
-};
+class Aligning;
+class Bridging;
+class Doubting;
+class Driving;
+class Intake;
+struct FixInDoubt;
+struct HoleMet;
+struct Start;
+using Interruption = std::variant<std::monostate, HoleMet, FixInDoubt>;
 
 /// The driver that all methods share: alignment, then a Navigator fed in order of time.
 /// - Increments are split at the stamps of fixes, requests and holds.
@@ -52,8 +33,8 @@ struct NavigationRunOptions {
 /// - Fixes are gated by the chi-square test of their innovation (3 degrees of freedom), relative to
 ///   the median of recent ones where that is above its expectation. Where one does not pass, or is
 ///   the first after an outage, what follows is held back until it shows whether the fixes or the
-///   state are wrong (src/fix_doubt.h), 90 s at most; epochs and fixes are given out that much
-///   later, as if it had been known at once. After a hole the gate is open for ten seconds.
+///   state are wrong (diagnosis/fix_doubt.h), 90 s at most; epochs and fixes are given out that
+///   much later, as if it had been known at once. After a hole the gate is open for ten seconds.
 /// - Velocities of fixes that were used are gated in the same way, by themselves, if the aids have
 ///   them.
 /// - Before the alignment, fixes that no vehicle can reach from their neighbours are left out.
@@ -73,128 +54,47 @@ struct NavigationRunOptions {
 /// out. Memory is bounded: before alignment, at most what the Aligner may still start from is held.
 /// finish() throws DataError if there was no IMU, no usable fix, or no alignment, or if more than
 /// half of the increments had to be left out: why, and what to do about it.
-class NavigationRun : public Estimator {
+class NavigationRun : public state::Estimator {
  public:
-  NavigationRun(std::unique_ptr<Navigator> navigator, Aligner aligner,
-                const NavigationRunOptions& options, Sink& sink);
+  NavigationRun(std::unique_ptr<measurement::Navigator> navigator, alignment::Aligner aligner,
+                const NavigationRunOptions& options, state::Sink& sink);
   ~NavigationRun() override;
 
   void process(const Measurement& measurement) override;
   void finish() override;
 
  private:
-  using Event = std::variant<GnssFix, EpochRequest>;
+  /// Each a class of its own, in src/.
+  enum class Phase { aligning, driving, bridging, doubting };
 
-  /// Length of increments, weighed by their share of the time, so that slips of stamps do not
-  /// count.
-  struct UsualInterval {
-    double length = 0;  ///< [s]
-    double memory = 0;  ///< seconds that it rests on
-    void add(double dt);
-  };
-
-  /// What a fix is before anything is known of the state: the first of these that holds.
-  enum class FixClass { elsewhen, repeated, held, bad_position, bad_sigma, low_quality, usable };
-
-  struct Counts {
-    struct Class {
-      int64_t count = 0;
-      int64_t first_ns = 0;
-    };
-    std::map<FixClass, Class> fixes;
-    int64_t increments = 0;
-    int64_t late = 0;
-    std::optional<double> first_elsewhen_s;  ///< by how much the first of these is off
-    void add(FixClass fix_class, int64_t t_ns);
-    int64_t of(FixClass fix_class) const;
-    int64_t all_fixes() const;
-  };
-
-  FixClass classify(GnssFix& fix);
-  void process_increment(const ImuIncrement& increment);
-  void process_fix(const GnssFix& fix);
-  void pass_on(const Measurement& measurement);
-  bool is_repeated(const GnssFix& fix) const;
-  void leave_out(const GnssFix& fix, FixVerdict verdict);
-  bool is_usable(const GnssFix& fix) const;
-  void align(const Measurement& measurement);
-  void align_screened(const Measurement& measurement, bool plausible);
-  void show_aligner(const Measurement& measurement, bool plausible);
-  void start(const Epoch& aligned);
-  void drop_what_no_start_needs();
-
+  void go_through(const Measurement& measurement);
+  void go_through_waiting();
   void take(const Measurement& measurement);
-  void take_event(const Event& event);
-  void take_increment(const ImuIncrement& increment);
+  bool end_phase();
+
+  void begin(const Start& start);
+  void interrupt(const Interruption& interruption);
   void meet_hole(const ImuIncrement& next);
-  void look_beyond_hole(const Measurement& measurement);
-  int64_t beyond_hole_end_ns() const;
-  void leave_hole();
+  void bridge();
   void realign(const ImuIncrement& next);
-  bool advance(const ImuIncrement& increment);
-  std::optional<int64_t> next_stop(int64_t end_ns) const;
-  int64_t hold_due_ns() const;
-  void propagate(const ImuIncrement& increment);
+  void doubt(const FixInDoubt& in_doubt);
+  void resolve();
 
-  void handle_stop();
-  void handle_fix(const GnssFix& fix);
-  std::optional<FixDecision> decide(const GnssFix& fix, const Innovation& innovation);
-  std::optional<FixDecision> decided_before(const GnssFix& fix);
-  bool is_unheld(const GnssFix& fix) const;
-  bool returns_after_outage(const GnssFix& fix) const;
-  void doubt(const GnssFix& fix, const GnssFix& trusted);
-  bool show_doubt(const Measurement& measurement);
-  void doubt_state(int64_t t_ns);
-  void look_beyond_doubt(const Measurement& measurement);
-  void resolve_doubt();
-  FixVerdict carry_out(const FixDecision& decision, const GnssFix& fix, FixResult& result);
-  void use(const GnssFix& fix, FixResult& result);
-  void use_velocity(const GnssFix& fix);
-  void predict_ahead(const GnssFix& fix);
-  void remember_fix_time();
-  void hold();
-  void emit_epoch();
-  [[noreturn]] void throw_unsound(const std::string& part) const;
-  void notice_first_rejection(const GnssFix& fix, FixVerdict verdict);
+  /// Before what waits already.
+  template <class Measurements>
+  void put_first(const Measurements& measurements);
 
-  void notice_left_out();
-  void throw_if_nothing_usable() const;
-  std::string unusable_fixes() const;
-
-  std::unique_ptr<Navigator> navigator_;
-  Aligner aligner_;
+  state::Sink& sink_;
   NavigationRunOptions options_;
-  Sink& sink_;
-
-  bool aligned_ = false;
-  bool started_before_ = false;
-  int64_t time_ns_ = 0;
-  int64_t last_node_ns_ = 0;
-  std::optional<int64_t> last_epoch_ns_;
-  std::optional<int64_t> last_fix_ns_;
-  int64_t fix_interval_ns_ = 0;
-  std::unique_ptr<ImuGuard> guard_;
-  std::unique_ptr<FixGuard> fix_guard_;
-  std::unique_ptr<Plausibility> plausibility_;
-  std::unique_ptr<FixScreen> screen_;
-  std::unique_ptr<FixJudge> judge_;
-  std::unique_ptr<FixJudge> velocity_judge_;
-  std::unique_ptr<FixDoubt> doubt_;
-  std::optional<GnssFix> doubted_fix_;
-  std::deque<Measurement> beyond_doubt_;         ///< what came after it
-  std::multimap<int64_t, FixDecision> decided_;  ///< of fixes to come, by stamp
-  int64_t last_used_ns_ = 0;                     ///< fix, or start
-  std::unique_ptr<PredictionProbe> probe_;       ///< if predictions are wanted
-  std::optional<GnssFix> last_fix_seen_;
-  std::optional<Epoch> before_hole_;  ///< the last state, while aligning anew
-  UsualInterval usual_interval_;
-  RecentRates recent_;  ///< before now, for bridging a hole
-  std::deque<Measurement> held_;
-  std::multimap<int64_t, Event> pending_;  ///< by stamp
-  std::unique_ptr<ImuHole> hole_;          ///< met but not yet bridged
-  std::deque<Measurement> beyond_hole_;    ///< what came after it, from the increment that ends it
-  bool noticed_bad_ = false;
-  Counts counts_;
+  Phase phase_ = Phase::aligning;
+  std::deque<Measurement> waiting_;  ///< to be gone through, in order
+  std::unique_ptr<Intake> intake_;
+  std::unique_ptr<Aligning> aligning_;
+  std::unique_ptr<Driving> driving_;
+  std::unique_ptr<Bridging> bridging_;  ///< in that phase
+  std::unique_ptr<Doubting> doubting_;  ///< in that phase
+  bool started_ = false;
+  std::optional<state::Epoch> before_hole_;  ///< the last state before a new alignment
 };
 
 }  // namespace foucault::navigation
