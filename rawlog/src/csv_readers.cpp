@@ -11,6 +11,7 @@
 #include <deque>
 #include <filesystem>
 
+#include "foucault/core/constants.h"
 #include "foucault/core/error.h"
 #include "foucault/core/so3.h"
 #include "foucault/core/time.h"
@@ -22,8 +23,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr double kDegree = M_PI / 180;
-constexpr double kStandardGravity = 9.80665;
 constexpr double kOpenVerticalSigma = 10;  ///< of a speed along the ground [m/s]
 
 using Roles = std::vector<std::string>;

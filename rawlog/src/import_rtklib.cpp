@@ -9,6 +9,7 @@
 #include <map>
 
 #include "csv_readers.h"
+#include "foucault/core/constants.h"
 #include "foucault/core/error.h"
 #include "foucault/core/time.h"
 
@@ -20,7 +21,6 @@ using rawlog::TextTable;
 
 namespace {
 
-constexpr double kDegree = M_PI / 180;
 constexpr int kNanosecondDecimals = 9;
 constexpr int64_t kGpsEpochUnixNs = 315'964'800 * kNanosecondsPerSecond;  // 1980-01-06
 
@@ -101,7 +101,7 @@ int64_t time_of_day_ns(const Row& row) {
   if (!second || s.ec != std::errc{} || s.ptr != end || !(seconds >= 0 && seconds < 61)) {
     row.fail(fmt::format("'{}' is no time of day; correct or remove the row", text));
   }
-  return (hours * 3600 + minutes * 60) * kNanosecondsPerSecond + nanoseconds(seconds);
+  return (hours * kSecondsPerHour + minutes * 60) * kNanosecondsPerSecond + nanoseconds(seconds);
 }
 
 /// +-sqrt(|covariance|), as RTKLIB writes it, to the covariance.

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "foucault/core/constants.h"
 #include "foucault/core/error.h"
 #include "foucault/core/time.h"
 #include "mrpt_convert.h"
@@ -181,11 +182,11 @@ ImportSummary run_import(const ImportOptions& options, ImportInputs inputs) {
 }
 
 Geodetic checked_position(const Row& row, double latitude, double longitude, double height) {
-  if (std::abs(latitude) > M_PI / 2 || std::abs(longitude) > 2 * M_PI) {
+  if (std::abs(latitude) > kPi / 2 || std::abs(longitude) > 2 * kPi) {
     row.fail(
         fmt::format("latitude {:.9g} deg, longitude {:.9g} deg are no place on Earth; check "
                     "columns and units, correct or remove the row",
-                    latitude * 180 / M_PI, longitude * 180 / M_PI));
+                    latitude / kDegree, longitude / kDegree));
   }
   return {latitude, longitude, height};
 }
@@ -200,16 +201,15 @@ int64_t checked_stamp(const Row& row, int64_t t_ns) {
 }
 
 int64_t gps_stamp(const Row& row, int64_t week, int64_t tow_ns) {
-  constexpr int64_t kWeekNs = 604'800 * kNanosecondsPerSecond;
   constexpr int64_t kLastWeek = 10'000;
-  int64_t weeks = tow_ns / kWeekNs;
-  if (tow_ns % kWeekNs < 0) --weeks;
+  int64_t weeks = tow_ns / kNanosecondsPerWeek;
+  if (tow_ns % kNanosecondsPerWeek < 0) --weeks;
   const int64_t full_week = week + weeks;
   if (full_week < 0 || full_week > kLastWeek) {
     row.fail(fmt::format("GPS week {} lies outside 0 to {}; correct or remove the row", full_week,
                          kLastWeek));
   }
-  const GpsTime time{static_cast<int>(full_week), tow_ns - weeks * kWeekNs};
+  const GpsTime time{static_cast<int>(full_week), tow_ns - weeks * kNanosecondsPerWeek};
   return checked_stamp(row, gps_to_unix_ns(time));
 }
 

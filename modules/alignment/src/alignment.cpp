@@ -9,6 +9,7 @@
 
 #include "carried_attitude.h"
 #include "course_finder.h"
+#include "foucault/core/constants.h"
 #include "foucault/core/error.h"
 #include "foucault/core/time.h"
 #include "foucault/geodesy/local_frame.h"
@@ -25,7 +26,6 @@ using Eigen::Matrix3d;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
-constexpr double kDegree = 3.14159265358979323846 / 180;
 constexpr double kLargestHole = 0.1;      // [s]: over a longer one the attitude is lost
 constexpr double kRestSpeedSigma = 0.01;  // [m/s]
 /// With the heading given, a rest is complete at this length [s].

@@ -10,9 +10,6 @@
 namespace foucault {
 namespace {
 
-constexpr int64_t kSecondsPerDay = 86'400;
-constexpr int64_t kNanosecondsPerWeek = 7 * kSecondsPerDay * kNanosecondsPerSecond;
-
 /// Days from 1970-01-01 to the first day of a month; only for years from 1970 on.
 constexpr int64_t days_to(int year, int month) {
   constexpr int kDaysBefore[] = {0, 31, 59, 90, 120, 151, 181, 212, 243, 273, 304, 334};

@@ -18,11 +18,10 @@ namespace {
 using Eigen::Vector3d;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-using testing::kDeg;
 
 constexpr int64_t kStart = 1'700'000'000'000'000'000;
 constexpr int64_t kMs = 1'000'000;
-const Geodetic kPlace{48 * kDeg, 9 * kDeg, 300};
+const Geodetic kPlace{48 * kDegree, 9 * kDegree, 300};
 
 int64_t at(double ms) { return kStart + static_cast<int64_t>(ms * kMs); }
 double ms_of(int64_t t_ns) { return static_cast<double>(t_ns - kStart) / kMs; }
@@ -333,7 +332,7 @@ TEST_F(NavigationRunTest, BridgesAHoleWithTheRatesBeforeItAndMoreNoise) {
     angle += increment.dtheta_b.x();
     covered += increment.dt();
     // Random-walk angle of this density over the hole equals a constant rate error: s sqrt(T).
-    EXPECT_NEAR(extra, options_.gaps.rate_sigma_deg_s * kDeg * std::sqrt(2.0), 1e-9);
+    EXPECT_NEAR(extra, options_.gaps.rate_sigma_deg_s * kDegree * std::sqrt(2.0), 1e-9);
     EXPECT_NEAR(increment.extra_accel_noise_density,
                 options_.gaps.accel_sigma_m_s2 * std::sqrt(2.0), 1e-9);
   }
@@ -387,7 +386,7 @@ TEST_F(NavigationRunTest, TheCourseAfterAHoleTellsTheTurnInIt) {
     angle += increment.dtheta_b;
     velocity += increment.dvel_b;
     EXPECT_LT(increment.extra_gyro_noise_density,
-              options_.gaps.rate_sigma_deg_s * kDeg * std::sqrt(3.0));
+              options_.gaps.rate_sigma_deg_s * kDegree * std::sqrt(3.0));
   }
   EXPECT_NEAR(angle.x(), 0.3, 1e-9);       // as before the hole
   EXPECT_NEAR(angle.z(), M_PI / 2, 1e-3);  // chord in the NED of its own place

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 
+#include "foucault/core/constants.h"
 #include "foucault/core/time.h"
 #include "foucault/geodesy/local_frame.h"
 #include "foucault/simulation/random.h"
@@ -11,9 +12,6 @@
 namespace foucault::simulation {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-constexpr double kStandardGravity = 9.80665;
-constexpr int64_t kWeekNs = 604800 * kNanosecondsPerSecond;
 constexpr int64_t kEvery = 10;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
@@ -118,7 +116,7 @@ class Injection {
         for (const GnssFix& first : waiting_) give(first, due_ns);
         return waiting_.clear();
       case FaultKind::fix_another_week:
-        if (fixes_ % kEvery == 0) out.t_ns += std::llround(fault_.size) * kWeekNs;
+        if (fixes_ % kEvery == 0) out.t_ns += std::llround(fault_.size) * kNanosecondsPerWeek;
         break;
       case FaultKind::fix_stamps_offset:
         out.t_ns += nanoseconds(fault_.size);

@@ -2,6 +2,8 @@
 
 #include <cstdint>
 
+#include "foucault/core/constants.h"
+
 /// Stamps and time scales.
 /// Inside Foucault a stamp is `int64_t t_ns`: nanoseconds since 1970-01-01T00:00:00 UTC on the
 /// UNIX scale (as MRPT stamps), exact in integers; a duration is `double` seconds.
@@ -9,6 +11,7 @@
 namespace foucault {
 
 constexpr int64_t kNanosecondsPerSecond = 1'000'000'000;
+constexpr int64_t kNanosecondsPerWeek = kSecondsPerWeek * kNanosecondsPerSecond;
 
 /// end - begin [s].
 constexpr double seconds_between(int64_t begin_ns, int64_t end_ns) {
