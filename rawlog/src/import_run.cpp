@@ -118,8 +118,8 @@ void check_overlap(const ImportStream& imu, const ImportStream& other, const cha
   throw DataError(fmt::format(
       "IMU ({} to {}) and {} ({} to {}) do not overlap; check week, time system and offsets of "
       "'{}' and '{}'",
-      describe_stamp(imu.first_ns), describe_stamp(imu.last_ns), what,
-      describe_stamp(other.first_ns), describe_stamp(other.last_ns), imu.file, other.file));
+      utc_text(imu.first_ns), utc_text(imu.last_ns), what, utc_text(other.first_ns),
+      utc_text(other.last_ns), imu.file, other.file));
 }
 
 void check(const ImportSummary& summary) {
@@ -152,7 +152,7 @@ void StampOrder::check(const Row& row, int64_t t_ns, bool may_equal) {
     row.fail(
         fmt::format("the stamp {} does not come after the one before it, {}; sort the file "
                     "by time and remove repeated rows",
-                    describe_stamp(t_ns), describe_stamp(*last_ns_)));
+                    utc_text(t_ns), utc_text(*last_ns_)));
   }
   last_ns_ = t_ns;
 }

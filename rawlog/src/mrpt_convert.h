@@ -58,7 +58,4 @@ ReferencePose decode_reference(const mrpt::obs::CObservationRobotPose& pose, con
 ReferencePose moved_to_imu(const ReferencePose& pose, const SensorPose& from,
                            const Eigen::Vector3d& p_v_imu);
 
-/// A stamp for messages: date and time of day, UTC, to the millisecond.
-std::string describe_stamp(int64_t t_ns);
-
 }  // namespace foucault::rawlog

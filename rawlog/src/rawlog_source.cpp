@@ -446,7 +446,7 @@ void RawlogSource::Impl::skip_backward(int64_t record, int64_t t_ns) {
          fmt::format(
              "{} IMU samples in a row come more than {:g} s after later ones, the last before "
              "them of {}; sort the log by time",
-             backward_in_a_row_, options_.reorder_s, rawlog::describe_stamp(last_sample_->t_ns)));
+             backward_in_a_row_, options_.reorder_s, utc_text(last_sample_->t_ns)));
   }
   skip_noted(kImu, "comes too late", t_ns);
 }
@@ -474,24 +474,21 @@ void RawlogSource::Impl::check_overlap() const {
   const double later_s = to_seconds(fix_span_.first_ns - imu_span_.first_ns);
   throw DataError(fmt::format(
       "'{}': IMU ({} to {}) and GNSS ({} to {}) do not overlap; GNSS begins {}", path_,
-      rawlog::describe_stamp(imu_span_.first_ns), rawlog::describe_stamp(imu_span_.last_ns),
-      rawlog::describe_stamp(fix_span_.first_ns), rawlog::describe_stamp(fix_span_.last_ns),
-      describe_mismatch(later_s)));
+      utc_text(imu_span_.first_ns), utc_text(imu_span_.last_ns), utc_text(fix_span_.first_ns),
+      utc_text(fix_span_.last_ns), describe_mismatch(later_s)));
 }
 
 void RawlogSource::Impl::fail(int64_t record, int64_t t_ns, const std::string& what) const {
-  throw DataError(
-      fmt::format("'{}': record {} at {}: {}", path_, record, rawlog::describe_stamp(t_ns), what));
+  throw DataError(fmt::format("'{}': record {} at {}: {}", path_, record, utc_text(t_ns), what));
 }
 
 std::vector<Notice> RawlogSource::Impl::notices() const {
   std::vector<Notice> notices;
   if (counts_.late > 0) {
-    notices.push_back(
-        {*first_late_ns_, NoticeKind::skipped,
-         fmt::format("{} records came more than {:g} s late and were left out, the "
-                     "first of {}",
-                     counts_.late, options_.reorder_s, rawlog::describe_stamp(*first_late_ns_))});
+    notices.push_back({*first_late_ns_, NoticeKind::skipped,
+                       fmt::format("{} records came more than {:g} s late and were left out, the "
+                                   "first of {}",
+                                   counts_.late, options_.reorder_s, utc_text(*first_late_ns_))});
   }
   const int64_t begin_ns = counts_.imu_samples > 0 ? imu_span_.first_ns : 0;
   if (counts_.imu_duplicates > 0) {

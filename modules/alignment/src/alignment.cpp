@@ -341,10 +341,10 @@ std::string Aligner::Impl::why_not() const {
   if (!first_fix_ns_) return head + "there is no usable GNSS fix";
   if (*last_fix_ns_ < *first_increment_ns_ || *last_increment_ns_ < *first_fix_ns_) {
     return head + fmt::format(
-                      "GNSS ({:.3f} to {:.3f} s) and IMU ({:.3f} to {:.3f} s) do not overlap in "
+                      "GNSS ({} to {}) and IMU ({} to {}) do not overlap in "
                       "time; check the time systems and offsets of the import",
-                      to_seconds(*first_fix_ns_), to_seconds(*last_fix_ns_),
-                      to_seconds(*first_increment_ns_), to_seconds(*last_increment_ns_));
+                      utc_text(*first_fix_ns_), utc_text(*last_fix_ns_),
+                      utc_text(*first_increment_ns_), utc_text(*last_increment_ns_));
   }
   if (all_given()) return head + "there are fewer than two fixes within the IMU data";
   if (tilted_) return head + wrong_axes(tilted_->up);
