@@ -258,6 +258,39 @@ TEST_F(Observations, InspvasOfASystemThatSitsElsewhereIsMovedToTheImu) {
   EXPECT_LT((at_reference.to_local(pose.position) - Eigen::Vector3d(0, -2, 0)).norm(), 1e-6);
 }
 
+TEST_F(Observations, VelocityOfAReferenceElsewhereIsMovedToTheImu) {
+  // The vehicle, heading east, turns right by 0.5 rad/s; the reference 2 m ahead of the IMU swings
+  // to the south by 1 m/s more.
+  auto imu = imu_at(kBegin);
+  imu.set(mrpt::obs::IMU_WX, 0);
+  imu.set(mrpt::obs::IMU_WY, 0);
+  imu.set(mrpt::obs::IMU_WZ, -0.5);  // up, of an IMU on forward-left-up axes
+  auto reference = gps_at(kBegin + 15 * kMs, "REFERENCE");
+  reference.messages.clear();
+  gnss::Message_NV_OEM6_INSPVAS ins;
+  ins.fields.vel_east = 10;
+  ins.fields.vel_north = -1;
+  ins.fields.azimuth = 90;
+  reference.setMsg(ins);
+  const auto velocity_with_arm = [&](double arm) {
+    reference.sensorPose = mrpt::poses::CPose3D(arm, 0, 0, 0, 0, 0);
+    const std::string path = scratch_.path("swing.rawlog");
+    {
+      test::GzLog log(path);
+      log.write(gps_at(kBegin));
+      log.write(reference);
+      for (int i = 0; i < 4; ++i) {
+        imu.timestamp = test::mrpt_stamp(kBegin + i * 10 * kMs);
+        log.write(imu);
+      }
+    }
+    RawlogSource source(path);
+    return *all<ReferencePose>(source).at(0).velocity_n;
+  };
+  EXPECT_LT((velocity_with_arm(2) - Eigen::Vector3d(0, 10, 0)).norm(), 1e-12);
+  EXPECT_LT((velocity_with_arm(0) - Eigen::Vector3d(-1, 10, 0)).norm(), 1e-15);
+}
+
 TEST_F(Observations, InspvasRollPitchAzimuth) {
   auto reference = gps_at(kBegin, "REFERENCE");
   reference.messages.clear();
