@@ -11,6 +11,7 @@
 #include <deque>
 #include <filesystem>
 
+#include "foucault/core/constants.h"
 #include "foucault/core/error.h"
 #include "foucault/core/so3.h"
 #include "foucault/core/time.h"
@@ -22,8 +23,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr double kDegree = M_PI / 180;
-constexpr double kStandardGravity = 9.80665;
 constexpr double kOpenVerticalSigma = 10;  ///< of a speed along the ground [m/s]
 
 using Roles = std::vector<std::string>;
@@ -242,20 +241,11 @@ class ImuReader : public RecordReader {
 
 // GNSS ------------------------------------------------------------------------------------------
 
-std::optional<FixQuality> parse_quality(const std::string& name) {
-  static const std::map<std::string, FixQuality> kNames{
-      {"unknown", FixQuality::unknown},           {"single", FixQuality::single},
-      {"differential", FixQuality::differential}, {"ppp", FixQuality::ppp},
-      {"float_rtk", FixQuality::float_rtk},       {"fixed_rtk", FixQuality::fixed_rtk}};
-  const auto found = kNames.find(name);
-  return found == kNames.end() ? std::nullopt : std::optional(found->second);
-}
-
 /// Fix quality of a row; none where the receiver has no position.
 class QualityColumn {
  public:
   QualityColumn(const GnssMapping& mapping, const Columns& columns)
-      : constant_(parse_quality(mapping.quality).value_or(FixQuality::unknown)) {
+      : constant_(fix_quality(mapping.quality).value_or(FixQuality::unknown)) {
     if (!columns.has("quality")) return;
     column_ = columns.of("quality");
     if (mapping.quality_table.empty()) {
@@ -264,7 +254,7 @@ class QualityColumn {
           "{1: fixed_rtk, 2: float_rtk, 5: single, 0: none}");
     }
     for (const auto& [value, name] : mapping.quality_table) {
-      const std::optional<FixQuality> quality = parse_quality(name);
+      const std::optional<FixQuality> quality = fix_quality(name);
       if (!quality && name != "none") {
         throw UsageError(
             fmt::format("gnss.quality_table: '{}' is no quality; known: none, unknown, "

@@ -5,6 +5,7 @@
 #include <limits>
 #include <type_traits>
 
+#include "foucault/core/constants.h"
 #include "foucault/core/so3.h"
 #include "foucault/core/time.h"
 #include "foucault/geodesy/wgs84.h"
@@ -21,8 +22,7 @@ namespace position_type = mrpt::obs::gnss::nv_oem6_position_type;
 namespace solution_status = mrpt::obs::gnss::nv_oem6_solution_status;
 namespace ins_status = mrpt::obs::gnss::nv_oem6_ins_status_type;
 
-constexpr double kDegree = M_PI / 180;
-constexpr double kKnot = 1852.0 / 3600.0;
+constexpr double kKnot = 1852.0 / kSecondsPerHour;
 /// Of velocities that come without one [m/s]: from a speed and a course along the ground, which
 /// leave the vertical open, or from a velocity vector.
 constexpr double kSpeedSigma = 0.2;
@@ -339,8 +339,6 @@ NmeaSigma nmea_sigma(FixQuality quality, std::optional<double> hdop) {
   return {horizontal * dilution, 2 * horizontal * dilution};
 }
 
-namespace rawlog {
-
 std::optional<GnssFix> decode_fix(const mrpt::obs::CObservationGPS& gps, int64_t t_ns) {
   std::optional<GnssFix> fix = position_of(gps);
   if (!fix) return std::nullopt;
@@ -407,7 +405,5 @@ void encode_reference(const ReferencePose& pose, mrpt::obs::CObservationGPS& gps
   gps.has_satellite_timestamp = true;
   gps.setMsg(message);
 }
-
-}  // namespace rawlog
 
 }  // namespace foucault::rawlog

@@ -4,6 +4,7 @@
 
 #include <deque>
 
+#include "foucault/core/constants.h"
 #include "foucault/core/error.h"
 #include "foucault/core/so3.h"
 #include "foucault/core/time.h"
@@ -17,8 +18,6 @@ using rawlog::TextTable;
 
 namespace {
 
-constexpr double kDegree = M_PI / 180;
-constexpr int64_t kWeekNs = 604'800 * kNanosecondsPerSecond;
 constexpr int kNanosecondDecimals = 9;
 
 TextTable open_table(const std::string& path) {
@@ -52,7 +51,7 @@ class WeekClock {
 
   int64_t stamp(const Row& row, size_t column) {
     const int64_t sow_ns = row.scaled(column, kNanosecondDecimals);
-    if (sow_ns < 0 || sow_ns > kWeekNs) {
+    if (sow_ns < 0 || sow_ns > kNanosecondsPerWeek) {
       row.fail(fmt::format("second of week {} lies outside 0 to 604800; correct or remove the row",
                            row.text(column)));
     }
@@ -63,8 +62,10 @@ class WeekClock {
   }
 
  private:
-  static bool begins_week(int64_t sow_ns) { return sow_ns < kWeekNs / 4; }
-  static bool ends_week(int64_t sow_ns) { return sow_ns > kWeekNs - kWeekNs / 4; }
+  static bool begins_week(int64_t sow_ns) { return sow_ns < kNanosecondsPerWeek / 4; }
+  static bool ends_week(int64_t sow_ns) {
+    return sow_ns > kNanosecondsPerWeek - kNanosecondsPerWeek / 4;
+  }
 
   int64_t week_;
   int64_t last_ns_;

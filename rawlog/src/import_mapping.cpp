@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 
+#include "foucault/core/constants.h"
 #include "foucault/core/error.h"
 #include "foucault/core/so3.h"
 
@@ -88,7 +89,7 @@ void ImuMapping::fields(ConfigFields& f) {
 }
 
 Mounting ImuMapping::mounting() const {
-  const Eigen::Vector3d rpy = mounting_rpy_deg * (M_PI / 180);
+  const Eigen::Vector3d rpy = mounting_rpy_deg * kDegree;
   const Eigen::Quaterniond axes_turn(axes_matrix(axes));
   return {(so3::from_euler({rpy.x(), rpy.y(), rpy.z()}) * axes_turn).normalized()};
 }

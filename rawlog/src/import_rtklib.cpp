@@ -9,6 +9,7 @@
 #include <map>
 
 #include "csv_readers.h"
+#include "foucault/core/constants.h"
 #include "foucault/core/error.h"
 #include "foucault/core/time.h"
 
@@ -20,9 +21,7 @@ using rawlog::TextTable;
 
 namespace {
 
-constexpr double kDegree = M_PI / 180;
 constexpr int kNanosecondDecimals = 9;
-constexpr int64_t kGpsEpochUnixNs = 315'964'800 * kNanosecondsPerSecond;  // 1980-01-06
 
 /// What the comment lines at the head of a .pos file say.
 struct PosHeader {
@@ -86,22 +85,31 @@ int64_t date_ns(const Row& row) {
   return static_cast<int64_t>(timegm(&day)) * kNanosecondsPerSecond;
 }
 
-/// hh:mm:ss.sss as nanoseconds.
-int64_t time_of_day_ns(const Row& row) {
-  const std::string_view text = row.text(1);
-  unsigned char hours = 0;
-  unsigned char minutes = 0;
-  double seconds = 0;
-  const char* end = text.data() + text.size();
-  const auto h = std::from_chars(text.data(), end, hours);
-  const bool first = h.ec == std::errc{} && h.ptr < end && *h.ptr == ':';
-  const auto m = first ? std::from_chars(h.ptr + 1, end, minutes) : h;
-  const bool second = first && m.ec == std::errc{} && m.ptr < end && *m.ptr == ':';
-  const auto s = second ? std::from_chars(m.ptr + 1, end, seconds) : std::from_chars_result{};
-  if (!second || s.ec != std::errc{} || s.ptr != end || !(seconds >= 0 && seconds < 61)) {
-    row.fail(fmt::format("'{}' is no time of day; correct or remove the row", text));
+/// Takes a number of [0, end) off the front, and the delimiter behind it; without one, the number
+/// is all there is.
+template <class Number>
+std::optional<Number> take(std::string_view& text, std::string_view delimiter, Number end) {
+  Number value{};
+  const auto read = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (read.ec != std::errc{} || !(value >= 0 && value < end)) return std::nullopt;
+  text.remove_prefix(static_cast<size_t>(read.ptr - text.data()));
+  if (delimiter.empty() ? !text.empty() : text.substr(0, delimiter.size()) != delimiter) {
+    return std::nullopt;
   }
-  return (hours * 3600 + minutes * 60) * kNanosecondsPerSecond + nanoseconds(seconds);
+  text.remove_prefix(delimiter.size());
+  return value;
+}
+
+/// hh:mm:ss.sss as nanoseconds; the last second of a day may be a leap second.
+int64_t time_of_day_ns(const Row& row) {
+  std::string_view text = row.text(1);
+  const std::optional<int> hours = take(text, ":", 24);
+  const std::optional<int> minutes = hours ? take(text, ":", 60) : std::nullopt;
+  const std::optional<double> seconds = minutes ? take(text, "", 61.0) : std::nullopt;
+  if (!seconds) {
+    row.fail(fmt::format("'{}' is no time of day; correct or remove the row", row.text(1)));
+  }
+  return (*hours * kSecondsPerHour + *minutes * 60) * kNanosecondsPerSecond + nanoseconds(*seconds);
 }
 
 /// +-sqrt(|covariance|), as RTKLIB writes it, to the covariance.
@@ -180,7 +188,7 @@ class PosReader : public rawlog::RecordReader {
     }
     const int64_t t_ns = date_ns(row) + time_of_day_ns(row) + offset_ns_;
     return header_.utc ? rawlog::checked_stamp(row, t_ns)
-                       : rawlog::gps_stamp(row, 0, t_ns - kGpsEpochUnixNs);
+                       : rawlog::gps_stamp(row, 0, t_ns - kGpsEpochNs);
   }
 
   /// North, east, down from columns like sdn, sde, sdu and, if there, sdne, sdeu, sdun.

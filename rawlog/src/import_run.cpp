@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "foucault/core/constants.h"
 #include "foucault/core/error.h"
 #include "foucault/core/time.h"
 #include "mrpt_convert.h"
@@ -117,8 +118,8 @@ void check_overlap(const ImportStream& imu, const ImportStream& other, const cha
   throw DataError(fmt::format(
       "IMU ({} to {}) and {} ({} to {}) do not overlap; check week, time system and offsets of "
       "'{}' and '{}'",
-      describe_stamp(imu.first_ns), describe_stamp(imu.last_ns), what,
-      describe_stamp(other.first_ns), describe_stamp(other.last_ns), imu.file, other.file));
+      utc_text(imu.first_ns), utc_text(imu.last_ns), what, utc_text(other.first_ns),
+      utc_text(other.last_ns), imu.file, other.file));
 }
 
 void check(const ImportSummary& summary) {
@@ -151,7 +152,7 @@ void StampOrder::check(const Row& row, int64_t t_ns, bool may_equal) {
     row.fail(
         fmt::format("the stamp {} does not come after the one before it, {}; sort the file "
                     "by time and remove repeated rows",
-                    describe_stamp(t_ns), describe_stamp(*last_ns_)));
+                    utc_text(t_ns), utc_text(*last_ns_)));
   }
   last_ns_ = t_ns;
 }
@@ -181,11 +182,11 @@ ImportSummary run_import(const ImportOptions& options, ImportInputs inputs) {
 }
 
 Geodetic checked_position(const Row& row, double latitude, double longitude, double height) {
-  if (std::abs(latitude) > M_PI / 2 || std::abs(longitude) > 2 * M_PI) {
+  if (std::abs(latitude) > kPi / 2 || std::abs(longitude) > 2 * kPi) {
     row.fail(
         fmt::format("latitude {:.9g} deg, longitude {:.9g} deg are no place on Earth; check "
                     "columns and units, correct or remove the row",
-                    latitude * 180 / M_PI, longitude * 180 / M_PI));
+                    latitude / kDegree, longitude / kDegree));
   }
   return {latitude, longitude, height};
 }
@@ -200,16 +201,15 @@ int64_t checked_stamp(const Row& row, int64_t t_ns) {
 }
 
 int64_t gps_stamp(const Row& row, int64_t week, int64_t tow_ns) {
-  constexpr int64_t kWeekNs = 604'800 * kNanosecondsPerSecond;
   constexpr int64_t kLastWeek = 10'000;
-  int64_t weeks = tow_ns / kWeekNs;
-  if (tow_ns % kWeekNs < 0) --weeks;
+  int64_t weeks = tow_ns / kNanosecondsPerWeek;
+  if (tow_ns % kNanosecondsPerWeek < 0) --weeks;
   const int64_t full_week = week + weeks;
   if (full_week < 0 || full_week > kLastWeek) {
     row.fail(fmt::format("GPS week {} lies outside 0 to {}; correct or remove the row", full_week,
                          kLastWeek));
   }
-  const GpsTime time{static_cast<int>(full_week), tow_ns - weeks * kWeekNs};
+  const GpsTime time{static_cast<int>(full_week), tow_ns - weeks * kNanosecondsPerWeek};
   return checked_stamp(row, gps_to_unix_ns(time));
 }
 

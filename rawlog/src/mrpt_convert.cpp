@@ -1,9 +1,5 @@
 #include "mrpt_convert.h"
 
-#include <fmt/format.h>
-
-#include <ctime>
-
 #include "foucault/core/so3.h"
 #include "foucault/core/time.h"
 #include "foucault/geodesy/local_frame.h"
@@ -117,19 +113,6 @@ ReferencePose moved_to_imu(const ReferencePose& pose, const SensorPose& from,
   const Eigen::Vector3d arm_n = *moved.q_n_v * (p_v_imu - from.p_v_s);
   if (arm_n.squaredNorm() > 0) moved.position = LocalFrame(pose.position).to_geodetic(arm_n);
   return moved;
-}
-
-std::string describe_stamp(int64_t t_ns) {
-  int64_t ms = t_ns / 1'000'000 % 1000;
-  auto seconds = static_cast<std::time_t>(t_ns / kNanosecondsPerSecond);
-  if (t_ns < 0 && t_ns % kNanosecondsPerSecond != 0) {
-    --seconds;
-    ms = (t_ns - seconds * kNanosecondsPerSecond) / 1'000'000;
-  }
-  std::tm utc{};
-  gmtime_r(&seconds, &utc);
-  return fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}.{:03}Z", utc.tm_year + 1900,
-                     utc.tm_mon + 1, utc.tm_mday, utc.tm_hour, utc.tm_min, utc.tm_sec, ms);
 }
 
 }  // namespace foucault::rawlog

@@ -53,12 +53,9 @@ void encode_reference(const ReferencePose& pose, mrpt::obs::CObservationGPS& gps
 ReferencePose decode_reference(const mrpt::obs::CObservationRobotPose& pose, const Geodetic& origin,
                                int64_t t_ns);
 
-/// Moves the pose of a sensor `from` to the IMU, on the vehicle's axes. The velocity is taken over
-/// as it is: the arm between the two turns slowly.
+/// Moves position and attitude of a sensor `from` to the IMU, on the vehicle's axes. The velocity
+/// takes the rate, which no record of a reference has: the source adds it.
 ReferencePose moved_to_imu(const ReferencePose& pose, const SensorPose& from,
                            const Eigen::Vector3d& p_v_imu);
-
-/// A stamp for messages: date and time of day, UTC, to the millisecond.
-std::string describe_stamp(int64_t t_ns);
 
 }  // namespace foucault::rawlog

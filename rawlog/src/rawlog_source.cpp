@@ -16,6 +16,7 @@
 #include "foucault/core/time_mismatch.h"
 #include "foucault/imu/burst_stamps.h"
 #include "foucault/imu/increments.h"
+#include "foucault/imu/recent_rates.h"
 #include "mrpt_convert.h"
 #include "rawlog_stream.h"
 
@@ -197,6 +198,8 @@ class RawlogSource::Impl {
   /// The earliest measurement can no longer be preceded by one that is still to come.
   bool settled() const;
   std::optional<Measurement> take_earliest();
+  /// The velocity of a reference moved to the IMU, too: v + omega x arm.
+  void swing(ReferencePose& pose) const;
   void read_one();
   void dispatch(const LoggedObservation& logged, int64_t t_ns);
   void take_imu(const rawlog::ImuRecord& imu, int64_t record, int64_t t_ns);
@@ -236,6 +239,8 @@ class RawlogSource::Impl {
   int backward_in_a_row_ = 0;
   std::deque<ImuIncrement> increments_;
   std::multimap<int64_t, Measurement> others_;
+  Eigen::Vector3d reference_arm_v_ = Eigen::Vector3d::Zero();  ///< reference to IMU
+  RecentRates rates_{kLeverArmRateMemory};                     ///< of what was released
   int64_t newest_imu_ns_ = std::numeric_limits<int64_t>::min();
   int64_t released_ns_ = std::numeric_limits<int64_t>::min();
   int64_t released_increment_ns_ = std::numeric_limits<int64_t>::min();
@@ -262,14 +267,23 @@ std::optional<Measurement> RawlogSource::Impl::take_earliest() {
     Measurement measurement = std::move(others_.begin()->second);
     released_ns_ = others_.begin()->first;
     others_.erase(others_.begin());
+    if (auto* pose = std::get_if<ReferencePose>(&measurement)) swing(*pose);
     return measurement;
   }
   if (increments_.empty()) return std::nullopt;
   const ImuIncrement increment = increments_.front();
   increments_.pop_front();
+  rates_.add(increment);
   released_ns_ = increment.t_end_ns;
   released_increment_ns_ = increment.t_end_ns;
   return increment;
+}
+
+/// The Earth's rate and the gyroscopes' biases are left in: 1 mm/s for an arm of 2 m.
+void RawlogSource::Impl::swing(ReferencePose& pose) const {
+  if (!pose.velocity_n || !pose.q_n_v || reference_arm_v_.squaredNorm() == 0) return;
+  const Eigen::Vector3d omega_v = mounting_.q_v_b * rates_.gyro_b;
+  *pose.velocity_n += *pose.q_n_v * omega_v.cross(reference_arm_v_);
 }
 
 void RawlogSource::Impl::read_one() {
@@ -404,8 +418,9 @@ void RawlogSource::Impl::take_gps(const mrpt::obs::CObservationGPS& gps, int64_t
 void RawlogSource::Impl::take_reference(const ReferencePose& pose,
                                         const mrpt::poses::CPose3D& sensor_pose,
                                         std::string_view type) {
-  const ReferencePose of_imu =
-      rawlog::moved_to_imu(pose, rawlog::from_mrpt(sensor_pose), overview_.imu.p_v_s);
+  const rawlog::SensorPose from = rawlog::from_mrpt(sensor_pose);
+  const ReferencePose of_imu = rawlog::moved_to_imu(pose, from, overview_.imu.p_v_s);
+  reference_arm_v_ = overview_.imu.p_v_s - from.p_v_s;
   if (!finite(of_imu.position)) return skip_noted(type, kNotFinite, pose.t_ns);
   if (add(of_imu)) ++counts_.references;
 }
@@ -446,7 +461,7 @@ void RawlogSource::Impl::skip_backward(int64_t record, int64_t t_ns) {
          fmt::format(
              "{} IMU samples in a row come more than {:g} s after later ones, the last before "
              "them of {}; sort the log by time",
-             backward_in_a_row_, options_.reorder_s, rawlog::describe_stamp(last_sample_->t_ns)));
+             backward_in_a_row_, options_.reorder_s, utc_text(last_sample_->t_ns)));
   }
   skip_noted(kImu, "comes too late", t_ns);
 }
@@ -474,24 +489,21 @@ void RawlogSource::Impl::check_overlap() const {
   const double later_s = to_seconds(fix_span_.first_ns - imu_span_.first_ns);
   throw DataError(fmt::format(
       "'{}': IMU ({} to {}) and GNSS ({} to {}) do not overlap; GNSS begins {}", path_,
-      rawlog::describe_stamp(imu_span_.first_ns), rawlog::describe_stamp(imu_span_.last_ns),
-      rawlog::describe_stamp(fix_span_.first_ns), rawlog::describe_stamp(fix_span_.last_ns),
-      describe_mismatch(later_s)));
+      utc_text(imu_span_.first_ns), utc_text(imu_span_.last_ns), utc_text(fix_span_.first_ns),
+      utc_text(fix_span_.last_ns), describe_mismatch(later_s)));
 }
 
 void RawlogSource::Impl::fail(int64_t record, int64_t t_ns, const std::string& what) const {
-  throw DataError(
-      fmt::format("'{}': record {} at {}: {}", path_, record, rawlog::describe_stamp(t_ns), what));
+  throw DataError(fmt::format("'{}': record {} at {}: {}", path_, record, utc_text(t_ns), what));
 }
 
 std::vector<Notice> RawlogSource::Impl::notices() const {
   std::vector<Notice> notices;
   if (counts_.late > 0) {
-    notices.push_back(
-        {*first_late_ns_, NoticeKind::skipped,
-         fmt::format("{} records came more than {:g} s late and were left out, the "
-                     "first of {}",
-                     counts_.late, options_.reorder_s, rawlog::describe_stamp(*first_late_ns_))});
+    notices.push_back({*first_late_ns_, NoticeKind::skipped,
+                       fmt::format("{} records came more than {:g} s late and were left out, the "
+                                   "first of {}",
+                                   counts_.late, options_.reorder_s, utc_text(*first_late_ns_))});
   }
   const int64_t begin_ns = counts_.imu_samples > 0 ? imu_span_.first_ns : 0;
   if (counts_.imu_duplicates > 0) {

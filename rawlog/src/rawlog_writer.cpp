@@ -27,9 +27,9 @@ bool finite(const Geodetic& position) {
 void require_stamp(int64_t t_ns) {
   if (rawlog::in_range_of_stamps(t_ns)) return;
   throw DataError(
-      fmt::format("the stamp {:.0f} s since 1970 is none of the years 1950 to 2150; check "
+      fmt::format("the stamp {} is none of the years 1950 to 2150; check "
                   "the time system of the input",
-                  to_seconds(t_ns)));
+                  utc_text(t_ns)));
 }
 
 /// Increment over the interval between the stamps as MRPT holds them.
@@ -41,7 +41,7 @@ ImuSample mean_rates(const ImuIncrement& increment) {
   if (end_ns <= begin_ns) {
     throw DataError(
         fmt::format("the IMU interval that ends at {} is shorter than 100 ns; remove it",
-                    rawlog::describe_stamp(increment.t_end_ns)));
+                    utc_text(increment.t_end_ns)));
   }
   const double dt = static_cast<double>(end_ns - begin_ns) * 1e-9;
   return {end_ns, increment.dtheta_b / dt, increment.dvel_b / dt};
@@ -114,8 +114,8 @@ class RawlogWriter::Impl {
  private:
   void require(bool ok, const char* what, int64_t t_ns) const {
     if (ok || values_ == WrittenValues::any) return;
-    throw DataError(fmt::format("{} at {} is not finite; remove it from the input", what,
-                                rawlog::describe_stamp(t_ns)));
+    throw DataError(
+        fmt::format("{} at {} is not finite; remove it from the input", what, utc_text(t_ns)));
   }
 
   void set_lever_arm(const Eigen::Vector3d& p_b_a) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <zlib.h>
 
+#include "foucault/core/constants.h"
 #include "foucault/core/so3.h"
 #include "foucault/core/time.h"
 #include "foucault/geodesy/local_frame.h"
@@ -20,8 +21,6 @@ using test::Scratch;
 using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-
-constexpr double kDegree = M_PI / 180;
 
 template <class Kind>
 std::vector<Kind> all(const std::string& path, SampleKind samples = SampleKind::interval_mean) {
@@ -269,7 +268,8 @@ TEST_F(Csv, UnitsAndRecordedAxes) {
   const auto increments = all<ImuIncrement>(options_.out);
   ASSERT_EQ(increments.size(), 2U);
   EXPECT_LT((increments[0].dtheta_b / 0.01 - Eigen::Vector3d(1, 2, 3) * kDegree).norm(), 1e-14);
-  EXPECT_LT((increments[0].dvel_b / 0.01 - Eigen::Vector3d(0.1, 0.2, 1) * 9.80665).norm(), 1e-12);
+  EXPECT_LT((increments[0].dvel_b / 0.01 - Eigen::Vector3d(0.1, 0.2, 1) * kStandardGravity).norm(),
+            1e-12);
   RawlogSource source(options_.out);
   const Eigen::Matrix3d R_v_b = source.mounting().q_v_b.toRotationMatrix();
   EXPECT_TRUE(R_v_b.isApprox(Eigen::Vector3d(-1, 1, -1).asDiagonal().toDenseMatrix(), 1e-12));
@@ -519,6 +519,9 @@ TEST_F(Rtklib, OtherFormatsAreRefusedInWords) {
 TEST_F(Rtklib, BadRows) {
   for (const char* row : {"2200 100.01 47 8 400 9 12 0.01 0.02 0.03 0 0 0 0 9.9\n",
                           "2022/13/06 00:01:40.010 47 8 400 1 12 0.01 0.02 0.03 0 0 0 0 9.9\n",
+                          "2022/03/06 25:61:00 47 8 400 1 12 0.01 0.02 0.03 0 0 0 0 9.9\n",
+                          "2022/03/06 24:00:00 47 8 400 1 12 0.01 0.02 0.03 0 0 0 0 9.9\n",
+                          "2022/03/06 00:60:00 47 8 400 1 12 0.01 0.02 0.03 0 0 0 0 9.9\n",
                           "2022/03/06 00-01-40.010 47 8 400 1 12 0.01 0.02 0.03 0 0 0 0 9.9\n",
                           "2200 100.01 47 8 400 1 12 0.01 0.00 0.03 0 0 0 0 9.9\n",
                           "2200 100.01 47 8 400 1 12 0.01 0.02 0.03 0.5 0 0 0 9.9\n"}) {

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 
+#include "foucault/core/constants.h"
 #include "foucault/core/so3.h"
 #include "foucault/geodesy/local_frame.h"
 #include "foucault/geodesy/wgs84.h"
@@ -26,7 +27,6 @@ using test::gps_at;
 using test::imu_at;
 using test::Scratch;
 
-constexpr double kDegree = M_PI / 180;
 constexpr int64_t kBegin = 1'600'000'000'000'000'000;
 constexpr int64_t kMs = 1'000'000;
 
@@ -95,7 +95,7 @@ TEST_F(Observations, SensorPosesTurnOnceFromForwardLeftUp) {
 TEST_F(Observations, LeverArmIsInTheAxesOfATurnedImu) {
   // Yawed by 90 deg to the left: the sensor's x looks left, its y backward, its z up.
   auto imu = imu_at(kBegin);
-  imu.sensorPose = mrpt::poses::CPose3D(0, 0, 0, M_PI / 2, 0, 0);
+  imu.sensorPose = mrpt::poses::CPose3D(0, 0, 0, kPi / 2, 0, 0);
   auto gps = gps_at(kBegin + 5 * kMs);
   gps.sensorPose = mrpt::poses::CPose3D(3, 0, 0, 0, 0, 0);
   const std::string path = scratch_.path("pose.rawlog");
@@ -240,7 +240,7 @@ TEST_F(Observations, InspvasOfASystemThatSitsElsewhereIsMovedToTheImu) {
   // heads east, so that it reports north.
   auto reference = gps_at(kBegin + 5 * kMs, "REFERENCE");
   reference.messages.clear();
-  reference.sensorPose = mrpt::poses::CPose3D(2, 0, 0, M_PI / 2, 0, 0);
+  reference.sensorPose = mrpt::poses::CPose3D(2, 0, 0, kPi / 2, 0, 0);
   gnss::Message_NV_OEM6_INSPVAS ins;
   ins.fields.lat = 47.5;
   ins.fields.lon = 8.25;
@@ -252,10 +252,43 @@ TEST_F(Observations, InspvasOfASystemThatSitsElsewhereIsMovedToTheImu) {
   RawlogSource source(log_with({&gps, &reference}));
   const ReferencePose pose = all<ReferencePose>(source).at(0);
   const so3::Euler euler = so3::to_euler(*pose.q_n_v);
-  EXPECT_NEAR(euler.heading, M_PI / 2, 1e-12);
+  EXPECT_NEAR(euler.heading, kPi / 2, 1e-12);
   EXPECT_NEAR(pose.velocity_n->z(), -0.5, 1e-15);
   const LocalFrame at_reference({47.5 * kDegree, 8.25 * kDegree, 300});
   EXPECT_LT((at_reference.to_local(pose.position) - Eigen::Vector3d(0, -2, 0)).norm(), 1e-6);
+}
+
+TEST_F(Observations, VelocityOfAReferenceElsewhereIsMovedToTheImu) {
+  // The vehicle, heading east, turns right by 0.5 rad/s; the reference 2 m ahead of the IMU swings
+  // to the south by 1 m/s more.
+  auto imu = imu_at(kBegin);
+  imu.set(mrpt::obs::IMU_WX, 0);
+  imu.set(mrpt::obs::IMU_WY, 0);
+  imu.set(mrpt::obs::IMU_WZ, -0.5);  // up, of an IMU on forward-left-up axes
+  auto reference = gps_at(kBegin + 15 * kMs, "REFERENCE");
+  reference.messages.clear();
+  gnss::Message_NV_OEM6_INSPVAS ins;
+  ins.fields.vel_east = 10;
+  ins.fields.vel_north = -1;
+  ins.fields.azimuth = 90;
+  reference.setMsg(ins);
+  const auto velocity_with_arm = [&](double arm) {
+    reference.sensorPose = mrpt::poses::CPose3D(arm, 0, 0, 0, 0, 0);
+    const std::string path = scratch_.path("swing.rawlog");
+    {
+      test::GzLog log(path);
+      log.write(gps_at(kBegin));
+      log.write(reference);
+      for (int i = 0; i < 4; ++i) {
+        imu.timestamp = test::mrpt_stamp(kBegin + i * 10 * kMs);
+        log.write(imu);
+      }
+    }
+    RawlogSource source(path);
+    return *all<ReferencePose>(source).at(0).velocity_n;
+  };
+  EXPECT_LT((velocity_with_arm(2) - Eigen::Vector3d(0, 10, 0)).norm(), 1e-12);
+  EXPECT_LT((velocity_with_arm(0) - Eigen::Vector3d(-1, 10, 0)).norm(), 1e-15);
 }
 
 TEST_F(Observations, InspvasRollPitchAzimuth) {
@@ -279,7 +312,7 @@ TEST_F(Observations, RobotPoseIsEastNorthUpAtTheFirstFix) {
   robot.sensorLabel = "REFERENCE";
   robot.timestamp = test::mrpt_stamp(kBegin + 5 * kMs);
   // 30 m east, 40 m north, 5 m up, nose to the north, nose up by 10 deg (MRPT's pitch is negative).
-  robot.pose.mean = mrpt::poses::CPose3D(30, 40, 5, M_PI / 2, -10 * kDegree, 0);
+  robot.pose.mean = mrpt::poses::CPose3D(30, 40, 5, kPi / 2, -10 * kDegree, 0);
   const auto gps = gps_at(kBegin);
   RawlogSource source(log_with({&gps, &robot}));
   const ReferencePose pose = all<ReferencePose>(source).at(0);

@@ -3,6 +3,7 @@
 
 #include <cstdlib>
 
+#include "foucault/core/constants.h"
 #include "foucault/core/time.h"
 #include "foucault/rawlog/import_csv.h"
 #include "foucault/rawlog/import_i2nav.h"
@@ -17,8 +18,6 @@ namespace foucault::rawlog {
 namespace {
 
 using test::Scratch;
-
-constexpr double kDegree = M_PI / 180;
 
 std::string data_dir() {
   const char* set = std::getenv("FOUCAULT_DATA_DIR");

@@ -3,6 +3,7 @@
 
 #include <random>
 
+#include "foucault/core/constants.h"
 #include "foucault/core/so3.h"
 #include "foucault/core/time.h"
 #include "foucault/geodesy/wgs84.h"
@@ -15,7 +16,6 @@ namespace {
 
 using test::Scratch;
 
-constexpr double kDegree = M_PI / 180;
 constexpr int64_t kBegin = 1'750'000'000'000'000'000;
 
 /// What a log gave out, by kind and in order.

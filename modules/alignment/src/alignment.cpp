@@ -9,6 +9,7 @@
 
 #include "carried_attitude.h"
 #include "course_finder.h"
+#include "foucault/core/constants.h"
 #include "foucault/core/error.h"
 #include "foucault/core/time.h"
 #include "foucault/geodesy/local_frame.h"
@@ -25,7 +26,6 @@ using Eigen::Matrix3d;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
-constexpr double kDegree = 3.14159265358979323846 / 180;
 constexpr double kLargestHole = 0.1;      // [s]: over a longer one the attitude is lost
 constexpr double kRestSpeedSigma = 0.01;  // [m/s]
 /// With the heading given, a rest is complete at this length [s].
@@ -341,10 +341,10 @@ std::string Aligner::Impl::why_not() const {
   if (!first_fix_ns_) return head + "there is no usable GNSS fix";
   if (*last_fix_ns_ < *first_increment_ns_ || *last_increment_ns_ < *first_fix_ns_) {
     return head + fmt::format(
-                      "GNSS ({:.3f} to {:.3f} s) and IMU ({:.3f} to {:.3f} s) do not overlap in "
+                      "GNSS ({} to {}) and IMU ({} to {}) do not overlap in "
                       "time; check the time systems and offsets of the import",
-                      to_seconds(*first_fix_ns_), to_seconds(*last_fix_ns_),
-                      to_seconds(*first_increment_ns_), to_seconds(*last_increment_ns_));
+                      utc_text(*first_fix_ns_), utc_text(*last_fix_ns_),
+                      utc_text(*first_increment_ns_), utc_text(*last_increment_ns_));
   }
   if (all_given()) return head + "there are fewer than two fixes within the IMU data";
   if (tilted_) return head + wrong_axes(tilted_->up);

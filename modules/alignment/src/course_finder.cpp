@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "foucault/core/constants.h"
 #include "foucault/core/so3.h"
 #include "foucault/core/time.h"
 #include "foucault/geodesy/local_frame.h"
@@ -19,8 +20,8 @@ constexpr std::size_t kLongestRun = 10;
 constexpr double kShortestRun = 2.8;  // [s]: three ways of a second
 constexpr double kAgreement = 4;      // chi-square per degree of freedom
 /// The vehicle's point without sideslip (a car's rear axle) lies within this of the IMU.
-constexpr double kSideslipArm = 1.5;                  // [m]
-constexpr double kCrabSigma = 0.3 * 0.0174532925199;  // [rad], of a single course
+constexpr double kSideslipArm = 1.5;          // [m]
+constexpr double kCrabSigma = 0.3 * kDegree;  // [rad], of a single course
 
 Eigen::Vector3d forward_l(const LevelAttitude& attitude) {
   return attitude.q_l_b * attitude.forward_b;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "foucault/core/constants.h"
 #include "foucault/core/so3.h"
 #include "foucault/core/time.h"
 #include "foucault/geodesy/local_frame.h"
@@ -17,7 +18,6 @@ using Eigen::Matrix3d;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
-constexpr double kDegree = 0.0174532925199;
 constexpr double kShortest = 3.9;               // [s]
 constexpr double kLongest = 10.1;               // [s]
 constexpr std::ptrdiff_t kFewestFixes = 4;      // of 3 parameters an axis

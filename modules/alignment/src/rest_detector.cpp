@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "foucault/core/constants.h"
 #include "foucault/core/time.h"
 #include "foucault/geodesy/course.h"
 #include "foucault/geodesy/local_frame.h"
@@ -11,9 +12,9 @@ namespace foucault::alignment {
 
 namespace {
 
-constexpr double kBlock = 1.0;                         // [s]
-constexpr double kSteadyGyro = 0.3 * 0.0174532925199;  // [rad/s]
-constexpr double kSteadyAccel = 0.08;                  // [m/s^2]
+constexpr double kBlock = 1.0;                 // [s]
+constexpr double kSteadyGyro = 0.3 * kDegree;  // [rad/s]
+constexpr double kSteadyAccel = 0.08;          // [m/s^2]
 constexpr std::size_t kRecentBlocks = 20;
 constexpr int kDisturbedBlocks = 3;        // more end the rest
 constexpr double kStandingSpeed = 0.2;     // [m/s], beyond 3 sigma

@@ -4,6 +4,7 @@
 
 #include <Eigen/Cholesky>
 
+#include "foucault/core/constants.h"
 #include "foucault/core/error.h"
 #include "test_drive.h"
 
@@ -15,7 +16,6 @@ using Eigen::Quaterniond;
 using Eigen::Vector3d;
 using testing::Drive;
 using testing::DriveSimulator;
-using testing::kDeg;
 using testing::rest_and_drive;
 using testing::Sensors;
 using testing::Truth;
@@ -94,7 +94,7 @@ TEST(AlignmentAtRest, WorksForAnyMounting) {
                               Vector3d(0, 0, 90), Vector3d(90, 0, 0), Vector3d(0, -80, 30)}) {
     Sensors sensors;
     sensors.gnss_noise = false;
-    sensors.q_v_b = so3::from_euler({rpy.x() * kDeg, rpy.y() * kDeg, rpy.z() * kDeg});
+    sensors.q_v_b = so3::from_euler({rpy.x() * kDegree, rpy.y() * kDegree, rpy.z() * kDegree});
     const DriveSimulator simulator(rest_and_drive(10, -2.0), sensors);
     const Outcome outcome = align(simulator, sensors, noise_of(sensors, 1e-4, 1e-2));
     ASSERT_TRUE(outcome.initial) << rpy.transpose() << outcome.why_not;
@@ -135,12 +135,12 @@ void add_run(Consistency& sum, const Epoch& epoch, const Truth& truth, const Imu
 template <class MakeDrive>
 Consistency run_seeds(int runs, const MakeDrive& make_drive, Sensors sensors,
                       const AlignmentOptions& options = {}) {
-  const double gyro_turn_on = 100 * kDeg / 3600, accel_turn_on = 1.5e-3 * 9.8;
+  const double gyro_turn_on = 100 * kDegree / 3600, accel_turn_on = 1.5e-3 * 9.8;
   Consistency sum;
   for (int seed = 1; seed <= runs; ++seed) {
     std::mt19937 rng(static_cast<unsigned>(seed));
     std::normal_distribution<double> normal;
-    std::uniform_real_distribution<double> angle(-M_PI, M_PI);
+    std::uniform_real_distribution<double> angle(-kPi, kPi);
     const auto draw = [&](double sigma) {
       return Vector3d(sigma * normal(rng), sigma * normal(rng), sigma * normal(rng));
     };
@@ -159,7 +159,7 @@ Consistency run_seeds(int runs, const MakeDrive& make_drive, Sensors sensors,
 
 Sensors industrial_sensors() {
   Sensors sensors;
-  sensors.gyro_density = 0.15 * kDeg / 60;
+  sensors.gyro_density = 0.15 * kDegree / 60;
   sensors.accel_density = 0.012 / 60;
   return sensors;
 }
@@ -250,14 +250,14 @@ Drive drive_without_rest(double heading) {
 TEST(AlignmentWhileMoving, WithPerfectSensorsLandsOnTheTruth) {
   Sensors sensors;
   sensors.gnss_noise = false;
-  sensors.q_v_b = so3::from_euler({M_PI, 0.1, 0.2});
+  sensors.q_v_b = so3::from_euler({kPi, 0.1, 0.2});
   const DriveSimulator simulator(drive_without_rest(2.0), sensors);
   const Outcome outcome = align(simulator, sensors, noise_of(sensors, 1e-4, 1e-2));
   ASSERT_TRUE(outcome.initial) << outcome.why_not;
   const NodeVector error = error_of(*outcome.initial, simulator.truth(outcome.initial->t_ns), {});
   EXPECT_LT(part(error, position).norm(), 1e-3);
   EXPECT_LT(part(error, velocity).norm(), 0.05);
-  EXPECT_LT(part(error, block::attitude).norm(), 0.1 * kDeg);
+  EXPECT_LT(part(error, block::attitude).norm(), 0.1 * kDegree);
 }
 
 TEST(AlignmentWhileMoving, ErrorsStayWithinTheirSigmas) {
@@ -303,9 +303,9 @@ struct BadStart {
     };
     d.heading = [](double t) {
       const double turning = std::clamp(t - kRest - 3, 0.0, kBad - 3);
-      return kHeading + 12 * kDeg * turning;
+      return kHeading + 12 * kDegree * turning;
     };
-    d.turn_rate = [](double t) { return t > kRest + 3 && t < kRest + kBad ? 12 * kDeg : 0.0; };
+    d.turn_rate = [](double t) { return t > kRest + 3 && t < kRest + kBad ? 12 * kDegree : 0.0; };
     d.duration = 60;
     return d;
   }
@@ -323,7 +323,7 @@ TEST(Alignment, BadCourseIsNotTaken) {
     fix.antenna = LocalFrame(fix.antenna).to_geodetic(drift);
   };
   const DriveSimulator simulator(BadStart::drive(), sensors);
-  const ImuNoise noise = noise_of(sensors, 100 * kDeg / 3600, 0.015);
+  const ImuNoise noise = noise_of(sensors, 100 * kDegree / 3600, 0.015);
   const Outcome outcome = align(simulator, sensors, noise);
   ASSERT_TRUE(outcome.initial) << outcome.why_not;
   EXPECT_GT(seconds_between(DriveSimulator::kStart, outcome.known_at_ns),
@@ -331,7 +331,7 @@ TEST(Alignment, BadCourseIsNotTaken) {
   const double error =
       heading_error(*outcome.initial, simulator.truth(outcome.initial->t_ns), sensors.q_v_b);
   EXPECT_LT(std::abs(error), 3 * heading_sigma(*outcome.initial));
-  EXPECT_LT(heading_sigma(*outcome.initial), 1.5 * kDeg);
+  EXPECT_LT(heading_sigma(*outcome.initial), 1.5 * kDegree);
 
   // The same drive with criteria switched off and the fixes' quality hidden does fall for it.
   Sensors deceiving = sensors;
@@ -381,20 +381,20 @@ TEST(Alignment, GivenAnglesStartAtTheFirstFix) {
   options.mode = "given";
   options.roll_deg = 0.3;
   options.pitch_deg = -0.2;
-  options.heading_deg = heading / kDeg + 0.5;
+  options.heading_deg = heading / kDegree + 0.5;
   const Outcome outcome = align(simulator, sensors, noise_of(sensors, 1e-4, 0.015), options);
   ASSERT_TRUE(outcome.initial) << outcome.why_not;
   const Epoch& epoch = *outcome.initial;
   EXPECT_EQ(epoch.t_ns, DriveSimulator::kStart);
   const so3::Euler euler = so3::to_euler(epoch.q_n_b);
-  EXPECT_NEAR(euler.roll, 0.3 * kDeg, 1e-9);
-  EXPECT_NEAR(euler.pitch, -0.2 * kDeg, 1e-9);
-  EXPECT_NEAR(euler.heading, heading + 0.5 * kDeg, 1e-9);
+  EXPECT_NEAR(euler.roll, 0.3 * kDegree, 1e-9);
+  EXPECT_NEAR(euler.pitch, -0.2 * kDegree, 1e-9);
+  EXPECT_NEAR(euler.heading, heading + 0.5 * kDegree, 1e-9);
   const NodeVector error = error_of(epoch, simulator.truth(epoch.t_ns), sensors.bias);
   for (int i = 0; i < 15; ++i) {
     EXPECT_LT(std::abs(error[i]), 3.5 * std::sqrt(epoch.covariance(i, i)) + 1e-9) << i;
   }
-  EXPECT_NEAR(heading_sigma(epoch), options.heading_sigma_deg * kDeg, 1e-3 * kDeg);
+  EXPECT_NEAR(heading_sigma(epoch), options.heading_sigma_deg * kDegree, 1e-3 * kDegree);
 }
 
 TEST(Alignment, GivenModeNamesMissingAngles) {
@@ -415,14 +415,14 @@ TEST(Alignment, HeadingAloneCompletesARest) {
   standing.duration = 30;
   const DriveSimulator simulator(standing, sensors);
   AlignmentOptions options;
-  options.heading_deg = 0.7 / kDeg;
+  options.heading_deg = 0.7 / kDegree;
   options.heading_sigma_deg = 2;
   const Outcome outcome = align(simulator, sensors, noise_of(sensors, 1e-4, 0.015), options);
   ASSERT_TRUE(outcome.initial) << outcome.why_not;
   const NodeVector error =
       error_of(*outcome.initial, simulator.truth(outcome.initial->t_ns), sensors.bias);
-  EXPECT_LT(part(error, block::attitude).norm(), 0.02 * kDeg);
-  EXPECT_NEAR(heading_sigma(*outcome.initial), 2 * kDeg, 1e-3 * kDeg);
+  EXPECT_LT(part(error, block::attitude).norm(), 0.02 * kDegree);
+  EXPECT_NEAR(heading_sigma(*outcome.initial), 2 * kDegree, 1e-3 * kDegree);
 }
 
 TEST(Alignment, OptionsRoundTrip) {
@@ -457,7 +457,7 @@ std::vector<Measurement> on_its_side(double until_s, double duration_s) {
   drive.speed = [](double) { return 20.0; };
   drive.duration = duration_s;
   const DriveSimulator simulator(drive, Sensors());
-  const Quaterniond q_rolled_level(Eigen::AngleAxisd(-90 * kDeg, Vector3d::UnitX()));
+  const Quaterniond q_rolled_level(Eigen::AngleAxisd(-90 * kDegree, Vector3d::UnitX()));
   std::vector<Measurement> stream = simulator.stream();
   for (Measurement& m : stream) {
     auto* increment = std::get_if<ImuIncrement>(&m);
@@ -478,7 +478,7 @@ TEST(AlignmentWhileMoving, ARollIsNoProofOfWrongAxes) {
     if (const auto* increment = std::get_if<ImuIncrement>(&m)) aligner.add(*increment);
   }
   ASSERT_TRUE(aligner.initial().has_value()) << aligner.why_not();
-  EXPECT_NEAR(so3::to_euler(aligner.initial()->q_n_b).roll, 0, 2 * kDeg);
+  EXPECT_NEAR(so3::to_euler(aligner.initial()->q_n_b).roll, 0, 2 * kDegree);
 }
 
 TEST(AlignmentWhileMoving, AxesThatStayWrongAreRefused) {
@@ -510,7 +510,7 @@ TEST(Alignment, SaysWhyThereIsNone) {
 TEST(Alignment, VibrationAtRestDoesNotHideIt) {
   Sensors sensors = industrial_sensors();
   // As a running engine: 2.3 deg/s and 0.14 m/s^2 a sample at 100 Hz, white.
-  sensors.gyro_density = 2.3 * kDeg * 0.1;
+  sensors.gyro_density = 2.3 * kDegree * 0.1;
   sensors.accel_density = 0.14 * 0.1;
   const Consistency sum = run_seeds(
       20, [](double heading) { return rest_and_drive(30, heading); }, sensors);

@@ -6,6 +6,7 @@
 #include <random>
 #include <vector>
 
+#include "foucault/core/constants.h"
 #include "foucault/core/measurement.h"
 #include "foucault/core/so3.h"
 #include "foucault/core/time.h"
@@ -16,8 +17,6 @@
 #include "foucault/state/result.h"
 
 namespace foucault::testing {
-
-constexpr double kDeg = M_PI / 180;
 
 /// A drive in the plane of w, known in closed form: speed and heading over time, level vehicle.
 struct Drive {
@@ -32,7 +31,7 @@ struct Drive {
 inline Drive rest_and_drive(double rest_s, double heading, double acceleration = 1.5,
                             double cruise = 12) {
   const double ramp = cruise / acceleration;
-  const double turn_at = rest_s + ramp + 8, rate = 15 * kDeg;
+  const double turn_at = rest_s + ramp + 8, rate = 15 * kDegree;
   Drive drive;
   drive.speed = [=](double t) { return std::clamp(acceleration * (t - rest_s), 0.0, cruise); };
   drive.acceleration = [=](double t) {
@@ -161,7 +160,7 @@ class DriveSimulator {
 
   Drive drive_;
   Sensors sensors_;
-  LocalFrame frame_{Geodetic{48 * kDeg, 9 * kDeg, 300}};
+  LocalFrame frame_{Geodetic{48 * kDegree, 9 * kDegree, 300}};
   std::mt19937 rng_;
   std::normal_distribution<double> normal_;
   std::vector<Eigen::Vector3d> positions_;  ///< of the IMU in w, a step apart

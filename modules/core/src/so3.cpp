@@ -3,10 +3,10 @@
 #include <array>
 #include <cmath>
 
+#include "foucault/core/constants.h"
+
 namespace foucault::so3 {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 /// sin(x/2) / x. Below 1e-4 the next term, x^4 / 1920, is under 6e-20 of the value.
 double half_sinc(double x) { return x < 1e-4 ? 0.5 - x * x / 48 : std::sin(x / 2) / x; }

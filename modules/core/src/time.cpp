@@ -1,17 +1,17 @@
 #include "foucault/core/time.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <ctime>
 #include <iterator>
 #include <stdexcept>
 #include <string>
 
 namespace foucault {
 namespace {
-
-constexpr int64_t kSecondsPerDay = 86'400;
-constexpr int64_t kNanosecondsPerWeek = 7 * kSecondsPerDay * kNanosecondsPerSecond;
 
 /// Days from 1970-01-01 to the first day of a month; only for years from 1970 on.
 constexpr int64_t days_to(int year, int month) {
@@ -25,9 +25,6 @@ constexpr int64_t days_to(int year, int month) {
 constexpr int64_t utc_ns(int year, int month) {
   return days_to(year, month) * kSecondsPerDay * kNanosecondsPerSecond;
 }
-
-/// 1980-01-06, a Sunday.
-constexpr int64_t kGpsEpochNs = utc_ns(1980, 1) + 5 * kSecondsPerDay * kNanosecondsPerSecond;
 
 /// Instants from which GPS - UTC is one second more than before. Source: IERS Bulletin C.
 constexpr std::array kLeapSeconds{
@@ -58,6 +55,17 @@ int64_t nanoseconds(double seconds) {
   const double whole = std::floor(seconds);  // apart, so that dates keep their full precision
   return static_cast<int64_t>(whole) * kNanosecondsPerSecond +
          std::llround((seconds - whole) * 1e9);
+}
+
+std::string utc_text(int64_t t_ns) {
+  const int64_t rest = t_ns % kNanosecondsPerSecond;
+  const int64_t below = rest < 0 ? rest + kNanosecondsPerSecond : rest;
+  const std::time_t seconds = t_ns / kNanosecondsPerSecond - (rest < 0 ? 1 : 0);
+  std::tm utc{};
+  gmtime_r(&seconds, &utc);
+  return fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}.{:03}Z", utc.tm_year + 1900,
+                     utc.tm_mon + 1, utc.tm_mday, utc.tm_hour, utc.tm_min, utc.tm_sec,
+                     below / 1'000'000);
 }
 
 int gps_utc_offset_s(int64_t utc_ns) {

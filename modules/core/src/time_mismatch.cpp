@@ -4,12 +4,12 @@
 
 #include <cmath>
 
+#include "foucault/core/constants.h"
+
 namespace foucault {
 namespace {
 
-constexpr double kHour = 3600;
-constexpr double kWeek = 604800;
-constexpr double kRollover = 1024 * kWeek;
+constexpr double kRollover = 1024.0 * kSecondsPerWeek;
 
 /// Near a multiple of `unit`, not zero of them.
 bool is_multiple(double seconds, double unit, double tolerance) {
@@ -18,8 +18,8 @@ bool is_multiple(double seconds, double unit, double tolerance) {
 }
 
 std::string amount(double seconds) {
-  if (seconds >= kWeek) return fmt::format("{:.2f} weeks", seconds / kWeek);
-  if (seconds >= kHour) return fmt::format("{:.2f} hours", seconds / kHour);
+  if (seconds >= kSecondsPerWeek) return fmt::format("{:.2f} weeks", seconds / kSecondsPerWeek);
+  if (seconds >= kSecondsPerHour) return fmt::format("{:.2f} hours", seconds / kSecondsPerHour);
   return fmt::format("{:.2f} s", seconds);
 }
 
@@ -29,11 +29,12 @@ std::string describe_mismatch(double gnss_minus_imu_s) {
   const double seconds = std::abs(gnss_minus_imu_s);
   std::string text =
       fmt::format("{} {} the IMU", amount(seconds), gnss_minus_imu_s > 0 ? "after" : "before");
-  if (is_multiple(seconds, kRollover, kWeek)) {
+  if (is_multiple(seconds, kRollover, kSecondsPerWeek)) {
     text += ", a rollover of the GPS week; add or subtract 1024 weeks in the import";
-  } else if (is_multiple(seconds, kWeek, 6 * kHour)) {
+  } else if (is_multiple(seconds, kSecondsPerWeek, 6 * kSecondsPerHour)) {
     text += ", another GPS week; give the right week in the import";
-  } else if (seconds < 24 * kHour && is_multiple(seconds, kHour, 0.1 * kHour)) {
+  } else if (seconds < 24 * kSecondsPerHour &&
+             is_multiple(seconds, kSecondsPerHour, 0.1 * kSecondsPerHour)) {
     text += ", whole hours as between time zones; give an offset in the import";
   } else {
     text += "; check the time systems and offsets of the import";

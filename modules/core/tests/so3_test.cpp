@@ -6,6 +6,8 @@
 #include <random>
 #include <vector>
 
+#include "foucault/core/constants.h"
+
 namespace foucault::so3 {
 namespace {
 
@@ -13,7 +15,6 @@ using Real = long double;  // 64-bit mantissa: 2000 times finer than double
 using Vector3l = Eigen::Matrix<Real, 3, 1>;
 using Matrix3l = Eigen::Matrix<Real, 3, 3>;
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kEps = 2.3e-16;
 /// Of central differences: its square is the error of the formula, eps / step that of rounding.
 constexpr double kStep = 1e-5;

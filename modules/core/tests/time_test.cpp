@@ -79,6 +79,14 @@ TEST(Time, RoundTripIsExact) {
   }
 }
 
+TEST(Time, TextOfAStamp) {
+  EXPECT_EQ(utc_text(0), "1970-01-01T00:00:00.000Z");
+  EXPECT_EQ(utc_text(1'751'999'999'999'999'999), "2025-07-08T18:39:59.999Z");
+  EXPECT_EQ(utc_text(-1), "1969-12-31T23:59:59.999Z");
+  EXPECT_EQ(utc_text(-1'500'000'000), "1969-12-31T23:59:58.500Z");
+  EXPECT_EQ(utc_text(std::numeric_limits<int64_t>::min()).substr(0, 4), "1677");
+}
+
 TEST(Time, NanosecondsRoundToNearest) {
   EXPECT_EQ(nanoseconds(0.1), 100'000'000);
   EXPECT_EQ(nanoseconds(-0.1), -100'000'000);

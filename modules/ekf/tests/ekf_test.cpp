@@ -4,6 +4,7 @@
 
 #include <functional>
 
+#include "foucault/core/constants.h"
 #include "foucault/measurement/gnss_position.h"
 #include "foucault/measurement/gnss_velocity.h"
 #include "foucault/state/calibrate_options.h"
@@ -14,7 +15,6 @@ namespace {
 
 using Matrix = StateMatrix;
 using Vector = StateVector;
-using test::kDeg;
 using test::kLeverArm;
 using test::Trip;
 
@@ -24,11 +24,11 @@ using Matrix3x15 = Eigen::Matrix<double, 3, kSize>;
 
 ImuNoise adis16465() {
   ImuNoise noise;
-  noise.gyro_noise_density = 0.15 * kDeg / 60;
+  noise.gyro_noise_density = 0.15 * kDegree / 60;
   noise.accel_noise_density = 0.012 / 60;
-  noise.gyro_bias_sigma = 2 * kDeg / 3600;
+  noise.gyro_bias_sigma = 2 * kDegree / 3600;
   noise.accel_bias_sigma = 3.6e-5;
-  noise.gyro_turn_on_sigma = 100 * kDeg / 3600;
+  noise.gyro_turn_on_sigma = 100 * kDegree / 3600;
   noise.accel_turn_on_sigma = 1.4e-2;
   return noise;
 }
@@ -37,7 +37,7 @@ NodeVector initial_sigmas() {
   const ImuNoise noise = adis16465();
   NodeVector sigmas;
   sigmas << Eigen::Vector3d(0.05, 0.05, 0.05), Eigen::Vector3d(0.05, 0.05, 0.05),
-      Eigen::Vector3d(0.2, 0.2, 1) * kDeg,
+      Eigen::Vector3d(0.2, 0.2, 1) * kDegree,
       Eigen::Vector3d::Constant(std::hypot(noise.gyro_turn_on_sigma, noise.gyro_bias_sigma)),
       Eigen::Vector3d::Constant(std::hypot(noise.accel_turn_on_sigma, noise.accel_bias_sigma));
   return sigmas;
@@ -153,7 +153,7 @@ TEST(Ekf, AttitudeResetTurnsTheCovariance) {
   const NodeMatrix before_reset =
       information_update<3>(f.prior, f.numerical_H(), Eigen::Matrix3d(f.fix.position_covariance));
   const NodeMatrix expected = reset * before_reset * reset.transpose();
-  EXPECT_GT(part(d, block::attitude).norm(), 2 * kDeg);
+  EXPECT_GT(part(d, block::attitude).norm(), 2 * kDegree);
   EXPECT_LT(relative_deviation(filter.epoch().covariance, expected), 1e-5);
   EXPECT_GT(relative_deviation(filter.epoch().covariance, before_reset), 1e-3);
 }

@@ -4,6 +4,7 @@
 
 #include <map>
 
+#include "foucault/core/constants.h"
 #include "foucault/navigation/smoother.h"
 #include "foucault/simulation/simulated_source.h"
 #include "trip.h"
@@ -11,7 +12,6 @@
 namespace foucault::ekf {
 namespace {
 
-using test::kDeg;
 using test::Trip;
 
 constexpr int kSize = kNodeSize;
@@ -163,9 +163,9 @@ AlignmentOptions given_alignment(const SimulatedSource& source, int64_t start_ns
   const so3::Euler euler = so3::to_euler(source.truth(start_ns).q_n_b);
   AlignmentOptions options;
   options.mode = "given";
-  options.roll_deg = euler.roll / kDeg;
-  options.pitch_deg = euler.pitch / kDeg;
-  options.heading_deg = euler.heading / kDeg;
+  options.roll_deg = euler.roll / kDegree;
+  options.pitch_deg = euler.pitch / kDegree;
+  options.heading_deg = euler.heading / kDegree;
   return options;
 }
 

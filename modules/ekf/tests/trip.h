@@ -5,6 +5,7 @@
 #include <random>
 #include <vector>
 
+#include "foucault/core/constants.h"
 #include "foucault/core/so3.h"
 #include "foucault/core/time.h"
 #include "foucault/ekf/ekf.h"
@@ -15,7 +16,6 @@
 /// A simulated trip that many seeded runs share: exact increments are computed once.
 namespace foucault::test {
 
-constexpr double kDeg = 3.14159265358979323846 / 180;
 const Eigen::Vector3d kLeverArm(0.1, -0.3, -0.8);
 
 struct TripWindow {

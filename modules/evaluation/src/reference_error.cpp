@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "foucault/core/hermite.h"
 #include "foucault/core/so3.h"
 #include "foucault/core/time.h"
 #include "foucault/geodesy/local_frame.h"
@@ -12,13 +13,6 @@
 
 namespace foucault::evaluation {
 namespace {
-
-/// Cubic with p(0) = 0, p(1) = p1, and slopes m0, m1 by s.
-Eigen::Vector3d hermite_from_zero(const Eigen::Vector3d& m0, const Eigen::Vector3d& p1,
-                                  const Eigen::Vector3d& m1, double s) {
-  const double r = 1 - s;
-  return s * r * r * m0 + s * s * (3 - 2 * s) * p1 - s * s * r * m1;
-}
 
 /// Infinity is allowed and stays larger than any difference of stamps.
 int64_t limit_ns(double seconds) {
@@ -43,7 +37,7 @@ ReferencePose interpolate(const ReferencePose& a, const ReferencePose& b, int64_
   Eigen::Vector3d p_w = s * b_w;
   if (a.velocity_n && b.velocity_n) {
     const Eigen::Vector3d v_b_w = at_a.R_w_n(b.position) * *b.velocity_n;
-    p_w = hermite_from_zero(dt * *a.velocity_n, b_w, dt * v_b_w, s);
+    p_w = hermite(s, Eigen::Vector3d::Zero(), dt * *a.velocity_n, b_w, dt * v_b_w);
     between.velocity_n = (1 - s) * *a.velocity_n + s * *b.velocity_n;
   }
   between.position = at_a.to_geodetic(p_w);

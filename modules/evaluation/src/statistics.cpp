@@ -76,7 +76,8 @@ double share_larger(const std::vector<double>& base, const std::vector<double>& 
 /// fraction. Source: Abramowitz and Stegun 6.5.29, 6.5.31.
 double gamma_p(double a, double x) {
   if (x <= 0) return 0;
-  const double front = std::exp(a * std::log(x) - x - std::lgamma(a));
+  int sign = 1;  // of Gamma(a); std::lgamma would write it where all threads do
+  const double front = std::exp(a * std::log(x) - x - lgamma_r(a, &sign));
   if (x < a + 1) {
     double term = 1 / a;
     double sum = term;

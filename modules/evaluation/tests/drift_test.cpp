@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "foucault/core/constants.h"
 #include "foucault/core/so3.h"
 #include "foucault/core/time.h"
 #include "foucault/geodesy/local_frame.h"
@@ -81,7 +82,7 @@ TEST(DriftCollector, LeavesOutIncompleteOutages) {
 TEST(AntennaPosition, AddsTheLeverArm) {
   Epoch epoch;
   epoch.position = kHome;
-  epoch.q_n_b = so3::from_euler({0, 0, M_PI / 2});  // forward is east, right is south
+  epoch.q_n_b = so3::from_euler({0, 0, kPi / 2});  // forward is east, right is south
   const Geodetic antenna = antenna_position(epoch, {1, 2, -3});
   // The horizon's scale at 3 m more height: 2.2 m * 3 m / R.
   EXPECT_LT((ned_offset(kHome, antenna) - Eigen::Vector3d(-2, 1, -3)).norm(), 2e-6);

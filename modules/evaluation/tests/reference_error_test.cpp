@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "foucault/core/constants.h"
 #include "foucault/core/so3.h"
 #include "foucault/core/time.h"
 #include "foucault/geodesy/local_frame.h"
@@ -12,7 +13,6 @@
 namespace foucault::evaluation {
 namespace {
 
-constexpr double kDegree = 0.017453292519943295;
 const Geodetic kHome{48 * kDegree, 11 * kDegree, 500};
 
 /// A vehicle on a circle: radius 100 m, 0.1 rad/s, so 10 m/s and 1 m/s^2; climbing at 1 m/s.

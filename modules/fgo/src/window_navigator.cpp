@@ -19,9 +19,6 @@ constexpr double kSettled = 2e-4;  // [rad]
 /// Nor does a residual count that is off by less. [sigma]
 constexpr double kSettledResidual = 0.05;
 
-/// Each round solves a longer part of the window; the whole of it within a few.
-constexpr int kRounds = 8;
-
 }  // namespace
 
 WindowNavigator::WindowNavigator(const FgoOptions& options, PreintegrationModel model,
@@ -145,13 +142,15 @@ void WindowNavigator::add_node(const NodeState& x, const Preintegration& pre) {
   static_cast<ImuInterval&>(intervals_.emplace_back()) = std::move(open_);
 }
 
-/// The newest node has changed; all before it are linearized.
+/// The newest node has changed; all before it are linearized. After the last round nothing is
+/// integrated again: its elimination would be that of the factor before.
 void WindowNavigator::solve() {
   std::size_t from = nodes_.size() - 1;
-  for (int round = 0; round < kRounds && from < nodes_.size(); ++round) {
+  for (int round = 1; from < nodes_.size(); ++round) {
     optimize(from);
     linearize(from);
     carry_back(from);
+    if (round == options_.most_rounds) break;
     from = first_unsettled();
   }
   const StageTimer timer(Stage::covariance);

@@ -6,6 +6,7 @@
 #include <random>
 
 #include "../../preintegration/tests/closed_form_motion.h"
+#include "foucault/core/constants.h"
 #include "foucault/core/time.h"
 #include "foucault/fgo/fgo_options.h"
 #include "foucault/geodesy/local_frame.h"
@@ -18,7 +19,6 @@ namespace foucault::testing {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-inline constexpr double kDegree = M_PI / 180;
 inline const Geodetic kOrigin{30.45 * kDegree, 114.47 * kDegree, 20};
 
 inline ImuNoise test_noise() {

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "foucault/core/constants.h"
 #include "foucault/core/so3.h"
 
 namespace foucault::geodesy::wgs84 {
@@ -27,7 +28,7 @@ double height_factor(double s2) {
   return 2 * (1 + kFlattening + kGravityRatio - 2 * kFlattening * s2);
 }
 
-constexpr double kDegreesPerRadian = 57.29577951308232;
+constexpr double kDegreesPerRadian = 180 / kPi;
 
 /// Given to MRPT because its geodeticToGeocentric_WGS84 rounds the minor axis (52 um at the poles).
 /// Its geocentricToGeodetic is not used: 85 um wrong in latitude and lost at the south pole.

@@ -7,14 +7,12 @@
 #include <cmath>
 #include <vector>
 
+#include "foucault/core/constants.h"
 #include "foucault/core/so3.h"
 #include "foucault/geodesy/wgs84.h"
 
 namespace foucault::geodesy {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
-constexpr double kDegree = kPi / 180;
 
 Geodetic degrees(double latitude, double longitude, double height) {
   return {latitude * kDegree, longitude * kDegree, height};

@@ -9,13 +9,11 @@
 #include <cmath>
 #include <vector>
 
+#include "foucault/core/constants.h"
 #include "foucault/core/so3.h"
 
 namespace foucault::geodesy::wgs84 {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
-constexpr double kDegree = kPi / 180;
 
 const std::vector<double> kLatitudesDeg{-90,  -89.999999, -89.9, -60, -45,  -1e-7,       0, 1e-3,
                                         30.5, 45,         52.4,  80,  89.9, 89.99999999, 90};

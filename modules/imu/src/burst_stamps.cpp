@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
+#include "foucault/core/median.h"
 #include "foucault/core/time.h"
 
 namespace foucault::imu {
@@ -19,12 +21,6 @@ constexpr int kFewestBursts = 5;
 constexpr std::size_t kAhead = 400;  // samples: six bursts of 64, as FIFOs give
 constexpr int kBetweenLooks = 20;    // samples
 constexpr double kMissing = 1.5;     // times the usual interval, as in Incrementer
-
-double median(std::vector<double>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 double mean_interval(const std::vector<int64_t>& stamps_ns) {
   double sum = 0;
@@ -67,7 +63,7 @@ std::optional<BurstPattern> burst_pattern(const std::vector<int64_t>& stamps_ns,
   if (static_cast<double>(in_bursts) < share_of_short * all) return std::nullopt;
   if (intervals.size() < kFewestBursts) return std::nullopt;
   pattern.samples = all / (all - static_cast<double>(in_bursts));
-  pattern.interval_s = median(intervals);
+  pattern.interval_s = median(std::move(intervals));
   return pattern;
 }
 

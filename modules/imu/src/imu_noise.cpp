@@ -7,23 +7,21 @@
 #include <cmath>
 #include <limits>
 
+#include "foucault/core/constants.h"
 #include "foucault/core/error.h"
 
 namespace foucault::imu {
 
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-constexpr double kDegree = kPi / 180;
-constexpr double kStandardGravity = 9.80665;  // [m/s^2]
-constexpr double kSqrtHour = 60;              // [sqrt(s)]
+constexpr double kSqrtHour = 60;  // [sqrt(s)]
 
-constexpr double kDegPerSqrtHour = kDegree / kSqrtHour;  // to rad/s/sqrt(Hz)
-constexpr double kMPerSPerSqrtHour = 1 / kSqrtHour;      // to m/s^2/sqrt(Hz)
-constexpr double kDegPerHour = kDegree / 3600;           // to rad/s
-constexpr double kMilliGal = 1e-5;                       // to m/s^2
-constexpr double kMilliG = 1e-3 * kStandardGravity;      // to m/s^2
-constexpr double kMicroG = 1e-6 * kStandardGravity;      // to m/s^2, or per sqrt(Hz) alike
+constexpr double kDegPerSqrtHour = kDegree / kSqrtHour;    // to rad/s/sqrt(Hz)
+constexpr double kMPerSPerSqrtHour = 1 / kSqrtHour;        // to m/s^2/sqrt(Hz)
+constexpr double kDegPerHour = kDegree / kSecondsPerHour;  // to rad/s
+constexpr double kMilliGal = 1e-5;                         // to m/s^2
+constexpr double kMilliG = 1e-3 * kStandardGravity;        // to m/s^2
+constexpr double kMicroG = 1e-6 * kStandardGravity;        // to m/s^2, or per sqrt(Hz) alike
 
 struct Preset {
   const char* name;

@@ -21,14 +21,14 @@ constexpr int64_t kLongestPlausibleIntervalNs = kNanosecondsPerSecond / 10;
 
 void check_sample(const ImuSample& sample, const std::optional<ImuSample>& last) {
   if (!sample.gyro_b.allFinite() || !sample.accel_b.allFinite()) {
-    throw DataError(fmt::format("IMU sample at {:.6f} s is not finite; remove it from the log",
-                                to_seconds(sample.t_ns)));
+    throw DataError(fmt::format("IMU sample at {} is not finite; remove it from the log",
+                                utc_text(sample.t_ns)));
   }
   if (last && sample.t_ns <= last->t_ns) {
     throw DataError(
-        fmt::format("IMU stamp {:.6f} s does not come after the one before it, {:.6f} s; sort the "
+        fmt::format("IMU stamp {} does not come after the one before it, {}; sort the "
                     "samples by time and remove duplicates",
-                    to_seconds(sample.t_ns), to_seconds(last->t_ns)));
+                    utc_text(sample.t_ns), utc_text(last->t_ns)));
   }
 }
 

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "foucault/core/constants.h"
 #include "foucault/core/error.h"
 
 namespace foucault::imu {
@@ -17,17 +18,17 @@ void expect_near_relative(double value, double expected) {
 
 TEST(ImuNoise, PresetInSiUnits) {
   const ImuNoise noise = imu_preset("ADIS16465");
-  expect_near_relative(noise.gyro_noise_density, 0.15 * M_PI / 180 / 60);
+  expect_near_relative(noise.gyro_noise_density, 0.15 * kDegree / 60);
   expect_near_relative(noise.accel_noise_density, 0.012 / 60);
-  expect_near_relative(noise.gyro_bias_sigma, 2 * M_PI / 180 / 3600);
-  expect_near_relative(noise.accel_bias_sigma, 3.6e-6 * 9.80665);
+  expect_near_relative(noise.gyro_bias_sigma, 2 * kDegree / 3600);
+  expect_near_relative(noise.accel_bias_sigma, 3.6e-6 * kStandardGravity);
   expect_near_relative(noise.bias_tau, 3600);
-  expect_near_relative(noise.gyro_turn_on_sigma, 100 * M_PI / 180 / 3600);
-  expect_near_relative(noise.accel_turn_on_sigma, 1.4e-3 * 9.80665);
+  expect_near_relative(noise.gyro_turn_on_sigma, 100 * kDegree / 3600);
+  expect_near_relative(noise.accel_turn_on_sigma, 1.4e-3 * kStandardGravity);
 }
 
 TEST(ImuNoise, WhiteNoiseGivenInMicroG) {
-  expect_near_relative(imu_preset("ICM20602").accel_noise_density, 100e-6 * 9.80665);
+  expect_near_relative(imu_preset("ICM20602").accel_noise_density, 100e-6 * kStandardGravity);
 }
 
 TEST(ImuNoise, BetterGradesAreBetterInEveryNumber) {
@@ -97,12 +98,12 @@ TEST(ImuOptions, OverridesReplaceSingleValuesInTheirUnits) {
       " accel_turn_on_mgal: 2000}",
       "test", options);
   const ImuNoise noise = options.noise();
-  expect_near_relative(noise.gyro_noise_density, 0.1 * M_PI / 180);
+  expect_near_relative(noise.gyro_noise_density, 0.1 * kDegree);
   expect_near_relative(noise.accel_noise_density, 0.01);
-  expect_near_relative(noise.gyro_bias_sigma, M_PI / 180);
+  expect_near_relative(noise.gyro_bias_sigma, kDegree);
   expect_near_relative(noise.accel_bias_sigma, 0.01);
   expect_near_relative(noise.bias_tau, 100);
-  expect_near_relative(noise.gyro_turn_on_sigma, 2 * M_PI / 180);
+  expect_near_relative(noise.gyro_turn_on_sigma, 2 * kDegree);
   expect_near_relative(noise.accel_turn_on_sigma, 0.02);
   EXPECT_EQ(options.sample_kind(), SampleKind::instantaneous);
 }

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "foucault/core/constants.h"
 #include "foucault/core/so3.h"
 #include "foucault/core/time.h"
 #include "foucault/geodesy/place.h"
@@ -13,8 +14,6 @@
 
 namespace foucault::imu {
 namespace {
-
-constexpr double kDeg = 3.14159265358979323846 / 180;
 
 ScenarioOptions scenario(const std::string& name, double duration_s) {
   ScenarioOptions options;
@@ -163,7 +162,7 @@ TEST(Strapdown, ClosesAcrossTheDateLineAndAtHighLatitude) {
 
 TEST(Strapdown, RestStaysAtRestForAnHour) {
   NavState state;
-  state.position = {45 * kDeg, 7 * kDeg, 300};
+  state.position = {45 * kDegree, 7 * kDegree, 300};
   state.q_n_b = so3::from_euler({0.02, -0.03, 1.0});
   const Place place(state.position);
   const Geodetic start = state.position;
@@ -181,7 +180,7 @@ TEST(Strapdown, RestStaysAtRestForAnHour) {
 }
 
 TEST(Strapdown, DisplacementInvertsDisplaced) {
-  const Geodetic here{-33 * kDeg, 179.9999 * kDeg, 55};
+  const Geodetic here{-33 * kDegree, 179.9999 * kDegree, 55};
   const Place place(here);
   const Eigen::Vector3d d_n(120, 340, -12);
   const Geodetic there = displaced(here, d_n, place);

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "foucault/core/constants.h"
 #include "foucault/core/so3.h"
 #include "foucault/geodesy/place.h"
 #include "foucault/geodesy/wgs84.h"
@@ -19,7 +20,6 @@
 namespace foucault::measurement {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kEarthRadius = 6.3e6;  ///< [m], less than any
 constexpr double kMostLever = 2;        ///< [m]
 constexpr double kMostRate = 3;         ///< [rad/s]
@@ -117,8 +117,7 @@ Layout every_block() {
 /// Latitudes to +-80 deg, velocities to 250 m/s, any attitude, scale factors of several per cent.
 NavState random_state(std::mt19937& rng, const Layout& layout) {
   NavState x;
-  x.position = {between(rng, -80, 80) * kPi / 180, between(rng, -kPi, kPi),
-                between(rng, -100, 12e3)};
+  x.position = {between(rng, -80, 80) * kDegree, between(rng, -kPi, kPi), between(rng, -100, 12e3)};
   x.velocity_n = between(rng, 0, 250) * draw3(rng).normalized();
   x.q_n_b = so3::exp(between(rng, 0, kPi) * draw3(rng).normalized());
   x.bias = {0.1 * draw3(rng), 0.5 * draw3(rng)};
@@ -376,7 +375,7 @@ TEST(GnssObservations, OfATrueAntennaLeaveNoResidual) {
 /// By a degree about the vertical: 1.4 cm of 0.8 m, and 1.7 % of the swing at 0.4 rad/s.
 TEST(GnssObservations, OfATurnedLeverArmLeaveResiduals) {
   const Antenna antenna;
-  const Eigen::Vector3d turned = so3::exp({0, 0, kPi / 180}) * antenna.p_b_a;
+  const Eigen::Vector3d turned = so3::exp({0, 0, kDegree}) * antenna.p_b_a;
   const Residuals most = along_the_way(antenna, turned);
   EXPECT_GT(most.position, 0.01);
   EXPECT_GT(most.velocity, 1e-3);

@@ -23,8 +23,6 @@ namespace {
 
 constexpr double kRecentRatesMemory = 0.3;  // [s]: beyond vibration, well within a manoeuvre
 
-std::string text(int64_t t_ns) { return fmt::format("{:.3f} s", to_seconds(t_ns)); }
-
 Geodetic antenna_of(const state::Epoch& epoch, const Eigen::Vector3d& p_b_a) {
   return geodesy::LocalFrame(epoch.position).to_geodetic(epoch.q_n_b * p_b_a);
 }
@@ -180,8 +178,8 @@ void Driving::throw_unsound(const std::string& part) const {
   throw DataError(fmt::format(
       "the solution's {} is not finite at {} ({}); cut what is damaged or far off there out of the "
       "log, see `foucault check`, and look at the noise of the IMU (imu.*)",
-      part, text(time_ns_),
-      last_fix_ns ? "the last fix was used at " + text(*last_fix_ns)
+      part, utc_text(time_ns_),
+      last_fix_ns ? "the last fix was used at " + utc_text(*last_fix_ns)
                   : std::string("no fix was used since the start")));
 }
 
@@ -263,7 +261,7 @@ void Driving::notice_bad_sigma(const GnssFix& fix) {
   if (std::exchange(noticed_bad_sigma_, true)) return;
   sink_.notice({fix.t_ns, state::NoticeKind::fix_rejected,
                 fmt::format("fix at {} has no usable sigma or position; such fixes are left out",
-                            text(fix.t_ns))});
+                            utc_text(fix.t_ns))});
 }
 
 void Driving::leave_out(const GnssFix& fix, FixVerdict verdict) {

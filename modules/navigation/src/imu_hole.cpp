@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "foucault/core/constants.h"
 #include "foucault/core/so3.h"
 #include "foucault/core/time.h"
 #include "foucault/geodesy/course.h"
@@ -14,7 +15,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kDegree = 0.0174532925199;
 constexpr double kSlowest = 2.5;                // [m/s]: slower, a course says little
 constexpr double kShortestWay = 0.4;            // [s] between the fixes of a course
 constexpr double kCoarsest = 8 * kDegree;       // sigma of a useful course

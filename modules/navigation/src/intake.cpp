@@ -20,8 +20,6 @@ constexpr int64_t kElsewhenNs = 3600 * kNanosecondsPerSecond;
 constexpr double kIntervalMemory = 0.3;  // [s]: long against slips of stamps
 constexpr double kRepeatLasts = 3;       // [s] that the error of a stuck accelerometer stays
 
-std::string text(int64_t t_ns) { return fmt::format("{:.3f} s", to_seconds(t_ns)); }
-
 }  // namespace
 
 void UsualInterval::add(double dt) {
@@ -163,7 +161,7 @@ std::string Intake::unusable_fixes() const {
     const auto found = fixes_.find(fix_class);
     if (found == fixes_.end()) continue;
     list += fmt::format("{}{} {}, the first at {}", list.empty() ? "" : "; ", found->second.count,
-                        what, text(found->second.first_ns));
+                        what, utc_text(found->second.first_ns));
   }
   return list;
 }

@@ -19,12 +19,6 @@ namespace foucault::navigation {
 
 using state::NoticeKind;
 
-namespace {
-
-std::string text(int64_t t_ns) { return fmt::format("{:.3f} s", to_seconds(t_ns)); }
-
-}  // namespace
-
 NavigationRun::~NavigationRun() = default;
 
 NavigationRun::NavigationRun(std::unique_ptr<measurement::Navigator> navigator,
@@ -159,14 +153,14 @@ void NavigationRun::bridge() {
   driving_->doubt_state(end_ns);
   sink_.notice({end_ns, NoticeKind::imu_gap,
                 fmt::format("no IMU data for {:.3f} s up to {}; bridged{}", hole.length(),
-                            text(end_ns), hole.turn ? ", with the turn that GNSS shows" : "")});
+                            utc_text(end_ns), hole.turn ? ", with the turn that GNSS shows" : "")});
 }
 
 void NavigationRun::realign(const ImuIncrement& next) {
   const int64_t now_ns = driving_->time_ns();
   sink_.notice({next.t_begin_ns, NoticeKind::imu_gap,
                 fmt::format("no IMU data for {:.1f} s from {}; aligning anew, biases are kept",
-                            seconds_between(now_ns, next.t_begin_ns), text(now_ns))});
+                            seconds_between(now_ns, next.t_begin_ns), utc_text(now_ns))});
   before_hole_ = driving_->navigator().epoch();
   phase_ = Phase::aligning;
   aligning_->restart();

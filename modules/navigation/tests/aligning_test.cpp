@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "fake_run.h"
+#include "foucault/core/constants.h"
 #include "foucault/imu/imu_noise.h"
 #include "test_drive.h"
 
@@ -13,7 +14,6 @@ using testing::at;
 using testing::DriveSimulator;
 using testing::fix_at;
 using testing::increment_between;
-using testing::kDeg;
 
 alignment::Aligner aligner(const char* mode) {
   alignment::AlignmentOptions options;
@@ -24,7 +24,7 @@ alignment::Aligner aligner(const char* mode) {
 
 /// The start lies in the rest; all that came later is given back, once and in order.
 TEST(Aligning, GivesBackWhatCameAfterTheStart) {
-  const DriveSimulator drive(testing::rest_and_drive(10, 30 * kDeg), testing::Sensors{});
+  const DriveSimulator drive(testing::rest_and_drive(10, 30 * kDegree), testing::Sensors{});
   Aligning aligning(aligner("auto"), diagnosis::GnssOptions{});
   std::size_t taken = 0;
   std::optional<Start> start;

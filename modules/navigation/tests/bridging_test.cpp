@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "fake_run.h"
+#include "foucault/core/constants.h"
 
 namespace foucault::navigation {
 namespace {
@@ -38,7 +39,7 @@ TEST(Bridging, InterpolatesTheRatesOverTheWholeHole) {
   EXPECT_EQ(bridge.back().t_end_ns, at(2000));
   EXPECT_NEAR(turned(bridge).z(), 0.15 * 2, 1e-9);
   // A constant error of the rate over T is white noise of density sigma sqrt(T).
-  EXPECT_NEAR(bridge[7].extra_gyro_noise_density, 6 * M_PI / 180 * std::sqrt(2), 1e-9);
+  EXPECT_NEAR(bridge[7].extra_gyro_noise_density, 6 * kDegree * std::sqrt(2), 1e-9);
 }
 
 TEST(Bridging, WaitsThreeSecondsForFixes) {
@@ -71,8 +72,8 @@ TEST(Bridging, TheCourseAfterTheHoleTellsTheTurn) {
   }
   EXPECT_TRUE(bridging.take(fix_at(3005, Vector3d(20, 10, 0), 0.01)));
   ASSERT_TRUE(bridging.hole().turn);
-  EXPECT_NEAR(bridging.hole().turn->angle, M_PI / 2, 1e-3);
-  EXPECT_NEAR(turned(bridging.bridge(GapOptions{})).z(), M_PI / 2, 1e-3);
+  EXPECT_NEAR(bridging.hole().turn->angle, kPi / 2, 1e-3);
+  EXPECT_NEAR(turned(bridging.bridge(GapOptions{})).z(), kPi / 2, 1e-3);
 }
 
 TEST(Bridging, ASlowVehicleTellsNoTurn) {

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "foucault/core/constants.h"
 #include "foucault/core/measurement.h"
 #include "foucault/geodesy/local_frame.h"
 #include "foucault/measurement/navigator.h"
@@ -29,7 +30,7 @@ using namespace state;  // NOLINT: its interfaces
 
 constexpr int64_t kStart = 1'700'000'000'000'000'000;
 constexpr int64_t kMs = 1'000'000;
-inline const Geodetic kPlace{48 * M_PI / 180, 9 * M_PI / 180, 300};
+inline const Geodetic kPlace{48 * kDegree, 9 * kDegree, 300};
 
 inline int64_t at(double ms) { return kStart + static_cast<int64_t>(ms * kMs); }
 inline double ms_of(int64_t t_ns) { return static_cast<double>(t_ns - kStart) / kMs; }

@@ -35,8 +35,7 @@ Matrix3d times_cross(const Matrix3d& M, const Vector3d& v) {
 /// and so gains 1e-4 of its variance. Real ones wander by 1e-2 and more.
 double wandering_power(double power, const MarkovBias& bias) {
   constexpr double kLeastWander = 1e-5;
-  constexpr double kHour = 3600;  // [s]
-  return std::max(power, kLeastWander * kLeastWander * bias.sigma * bias.sigma / kHour);
+  return std::max(power, kLeastWander * kLeastWander * bias.sigma * bias.sigma / kSecondsPerHour);
 }
 
 /// q / |q| for a q that is off by rounding, a Newton step of it.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "foucault/core/constants.h"
 #include "foucault/core/measurement.h"
 #include "foucault/core/so3.h"
 #include "foucault/preintegration/motion.h"
@@ -119,7 +120,7 @@ inline Preintegration preintegrate(const std::vector<ImuIncrement>& increments,
 
 inline EarthModel wuhan_earth() {
   return earth_model(PreintegrationModel::refined,
-                     LocalFrame(Geodetic{30.45 * M_PI / 180, 114.47 * M_PI / 180, 20}),
+                     LocalFrame(Geodetic{30.45 * kDegree, 114.47 * kDegree, 20}),
                      Eigen::Vector3d::Zero());
 }
 

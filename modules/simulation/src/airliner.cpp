@@ -3,30 +3,30 @@
 #include <algorithm>
 #include <cmath>
 
+#include "foucault/core/constants.h"
+
 namespace foucault::simulation {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-constexpr double kDeg = kPi / 180;
 constexpr double kGravity = 9.81;
 
-constexpr double kCruiseAltitude = 10000;    ///< [m]
-constexpr double kCruiseSpeed = 250;         ///< [m/s]
-constexpr double kClimbRate = 12;            ///< [m/s]
-constexpr double kDescentRate = 10;          ///< [m/s]
-constexpr double kTakeOffSpeed = 80;         ///< [m/s]
-constexpr double kLandingSpeed = 72;         ///< [m/s]
-constexpr double kRunwayAcceleration = 1.8;  ///< [m/s^2]
-constexpr double kAirAcceleration = 0.5;     ///< [m/s^2]
-constexpr double kMaxVertical = 1.0;         ///< [m/s^2]
-constexpr double kLevelOff = 15;             ///< time constant of reaching a height [s]
-constexpr double kRollRate = 4 * kDeg;       ///< into and out of turns [rad/s]
-constexpr double kTurnAltitude = 600;        ///< no turns lower [m]
-constexpr double kSlowAltitude = 4000;       ///< slower below, on the way down [m]
-constexpr double kLandingReserve = 200;      ///< for the approach, the landing and the taxi [s]
-constexpr double kShortestFlight = 600;      ///< a shorter one does not land [s]
-constexpr double kFirstTurnAfter = 100;      ///< [s]
-constexpr double kMaxDeviation = 40 * kDeg;  ///< beyond, turns lead back to the first heading
+constexpr double kCruiseAltitude = 10000;       ///< [m]
+constexpr double kCruiseSpeed = 250;            ///< [m/s]
+constexpr double kClimbRate = 12;               ///< [m/s]
+constexpr double kDescentRate = 10;             ///< [m/s]
+constexpr double kTakeOffSpeed = 80;            ///< [m/s]
+constexpr double kLandingSpeed = 72;            ///< [m/s]
+constexpr double kRunwayAcceleration = 1.8;     ///< [m/s^2]
+constexpr double kAirAcceleration = 0.5;        ///< [m/s^2]
+constexpr double kMaxVertical = 1.0;            ///< [m/s^2]
+constexpr double kLevelOff = 15;                ///< time constant of reaching a height [s]
+constexpr double kRollRate = 4 * kDegree;       ///< into and out of turns [rad/s]
+constexpr double kTurnAltitude = 600;           ///< no turns lower [m]
+constexpr double kSlowAltitude = 4000;          ///< slower below, on the way down [m]
+constexpr double kLandingReserve = 200;         ///< for the approach, the landing and the taxi [s]
+constexpr double kShortestFlight = 600;         ///< a shorter one does not land [s]
+constexpr double kFirstTurnAfter = 100;         ///< [s]
+constexpr double kMaxDeviation = 40 * kDegree;  ///< beyond, turns lead back to the first heading
 
 double phase(Draws& draws) { return draws.uniform(0, 2 * kPi); }
 
@@ -58,8 +58,9 @@ Airliner::Airliner(const ScenarioOptions& options)
       pitch_noise_({}) {
   Draws draws(options.seed, RandomStream::surface);
   bumps_ = SineSum({{0.2, 900, phase(draws)}, {0.3, 2900, phase(draws)}});
-  roll_noise_ = SineSum({{0.3 * kDeg, 1100, phase(draws)}, {0.3 * kDeg, 2300, phase(draws)}});
-  pitch_noise_ = SineSum({{0.1 * kDeg, 900, phase(draws)}, {0.15 * kDeg, 3100, phase(draws)}});
+  roll_noise_ = SineSum({{0.3 * kDegree, 1100, phase(draws)}, {0.3 * kDegree, 2300, phase(draws)}});
+  pitch_noise_ =
+      SineSum({{0.1 * kDegree, 900, phase(draws)}, {0.15 * kDegree, 3100, phase(draws)}});
 }
 
 bool Airliner::descends() const {
@@ -83,8 +84,8 @@ void Airliner::plan_turn() {
   const double deviation = heading_ - first_heading_;
   const double side =
       std::abs(deviation) > kMaxDeviation ? (deviation > 0 ? -1.0 : 1.0) : draws_.sign();
-  turn_left_ = side * draws_.uniform(10, 60) * kDeg;
-  turn_bank_ = side * draws_.uniform(15, 25) * kDeg;
+  turn_left_ = side * draws_.uniform(10, 60) * kDegree;
+  turn_bank_ = side * draws_.uniform(15, 25) * kDegree;
   next_turn_s_ = time_ + draws_.uniform(90, 300);
 }
 
@@ -125,7 +126,7 @@ void Airliner::advance(double dt) {
 double Airliner::angle_of_attack() const {
   const double lift = std::min(1.0, altitude_ / 30);
   const double slow = kTakeOffSpeed / std::max(speed_, kTakeOffSpeed);
-  return lift * (1.5 + 5 * slow * slow) * kDeg;
+  return lift * (1.5 + 5 * slow * slow) * kDegree;
 }
 
 double Airliner::pitch() const {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 
+#include "foucault/core/constants.h"
 #include "foucault/core/time.h"
 #include "foucault/geodesy/local_frame.h"
 #include "foucault/simulation/random.h"
@@ -11,9 +12,6 @@
 namespace foucault::simulation {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-constexpr double kStandardGravity = 9.80665;
-constexpr int64_t kWeekNs = 604800 * kNanosecondsPerSecond;
 constexpr int64_t kEvery = 10;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
@@ -118,7 +116,7 @@ class Injection {
         for (const GnssFix& first : waiting_) give(first, due_ns);
         return waiting_.clear();
       case FaultKind::fix_another_week:
-        if (fixes_ % kEvery == 0) out.t_ns += std::llround(fault_.size) * kWeekNs;
+        if (fixes_ % kEvery == 0) out.t_ns += std::llround(fault_.size) * kNanosecondsPerWeek;
         break;
       case FaultKind::fix_stamps_offset:
         out.t_ns += nanoseconds(fault_.size);
@@ -160,24 +158,12 @@ class Injection {
         if (last_) out.dtheta_b.z() = last_->dtheta_b.z();
         break;
       case FaultKind::imu_half_rate:
-        if (increments_ % 2 == 1) {
-          last_ = increment;
-          return;
-        }
-        out.t_begin_ns = last_->t_begin_ns;
-        out.dtheta_b += last_->dtheta_b;
-        out.dvel_b += last_->dvel_b;
-        break;
+        return join_pairs(increment, due_ns);
       case FaultKind::imu_splice:
         if (since_start(increment.t_begin_ns) + 0.5 * increment.dt() < fault_.size) return;
-        [[fallthrough]];
-      case FaultKind::imu_stamps_offset: {
-        const double sign = fault_.kind == FaultKind::imu_splice ? -1 : 1;
-        const int64_t offset_ns = nanoseconds(sign * fault_.size);
-        out.t_begin_ns += offset_ns;
-        out.t_end_ns += offset_ns;
-        return give(out);
-      }
+        return give_later(increment, -fault_.size);
+      case FaultKind::imu_stamps_offset:
+        return give_later(increment, fault_.size);
       case FaultKind::imu_gyro_in_degrees:
         out.dtheta_b *= 180 / kPi;
         break;
@@ -192,6 +178,24 @@ class Injection {
         break;
     }
     give(out, due_ns);
+  }
+
+  void join_pairs(const ImuIncrement& increment, int64_t due_ns) {
+    if (increments_ % 2 == 1) {
+      last_ = increment;
+      return;
+    }
+    ImuIncrement out = increment;
+    out.t_begin_ns = last_->t_begin_ns;
+    out.dtheta_b += last_->dtheta_b;
+    out.dvel_b += last_->dvel_b;
+    give(out, due_ns);
+  }
+
+  void give_later(ImuIncrement increment, double seconds) {
+    increment.t_begin_ns += nanoseconds(seconds);
+    increment.t_end_ns += nanoseconds(seconds);
+    give(increment);
   }
 
   /// A burst comes when its last sample has been taken.

@@ -3,19 +3,18 @@
 #include <algorithm>
 #include <cmath>
 
+#include "foucault/core/constants.h"
+
 namespace foucault::simulation {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-constexpr double kDeg = kPi / 180;
-
-constexpr double kSight = 400;                    ///< a driver sees so far [m]
-constexpr double kMaxLateral = 3.0;               ///< in turns [m/s^2]
-constexpr double kMaxYawRate = 33 * kDeg;         ///< in turns [rad/s]
-constexpr double kMaxBraking = 3.0;               ///< [m/s^2]
-constexpr double kRollPerLateral = -0.4 * kDeg;   ///< body leans out of the turn [rad/(m/s^2)]
-constexpr double kPitchPerForward = 0.35 * kDeg;  ///< nose up when it accelerates
-constexpr double kSuspensionLag = 0.3;            ///< [s]
+constexpr double kSight = 400;                       ///< a driver sees so far [m]
+constexpr double kMaxLateral = 3.0;                  ///< in turns [m/s^2]
+constexpr double kMaxYawRate = 33 * kDegree;         ///< in turns [rad/s]
+constexpr double kMaxBraking = 3.0;                  ///< [m/s^2]
+constexpr double kRollPerLateral = -0.4 * kDegree;   ///< body leans out of the turn [rad/(m/s^2)]
+constexpr double kPitchPerForward = 0.35 * kDegree;  ///< nose up when it accelerates
+constexpr double kSuspensionLag = 0.3;               ///< [s]
 
 double phase(Draws& draws) { return draws.uniform(0, 2 * kPi); }
 
@@ -33,7 +32,7 @@ RoadStyle city_style() {
   style.min_length = 100, style.max_length = 600;
   style.min_speed = 11, style.max_speed = 16;
   style.bend_probability = 0.4;
-  style.min_bend = 3 * kDeg, style.max_bend = 25 * kDeg;
+  style.min_bend = 3 * kDegree, style.max_bend = 25 * kDegree;
   style.turn_probability = 0.5;
   style.stop_probability = 0.25;
   style.min_radius = 9, style.max_radius = 18;
@@ -47,11 +46,11 @@ RoadStyle motorway_style() {
   style.min_length = 600, style.max_length = 2500;
   style.min_speed = 29, style.max_speed = 32;
   style.bend_probability = 0.7;
-  style.min_bend = 2 * kDeg, style.max_bend = 20 * kDeg;
+  style.min_bend = 2 * kDegree, style.max_bend = 20 * kDegree;
   style.turn_probability = 0;
   style.stop_probability = 0;
   style.min_radius = 0, style.max_radius = 0;
-  style.max_deviation = 30 * kDeg;
+  style.max_deviation = 30 * kDegree;
   style.acceleration = 1.2, style.braking = 1.0;
   return style;
 }
@@ -87,7 +86,7 @@ RoadSection Road::between_junctions() {
 
 RoadSection Road::right_angle() {
   RoadSection section;
-  section.turn = bend_sign() * draws_.uniform(80 * kDeg, 100 * kDeg);
+  section.turn = bend_sign() * draws_.uniform(80 * kDegree, 100 * kDegree);
   section.length =
       2 * std::abs(section.turn) * draws_.uniform(style_.min_radius, style_.max_radius);
   section.speed = style_.max_speed;
@@ -113,8 +112,8 @@ RoadVehicle::RoadVehicle(const RoadStyle& style, const ScenarioOptions& options)
   Draws draws(options.seed, RandomStream::surface);
   hills_ = SineSum({{4.5, 2500, phase(draws)}, {2.5, 1200, phase(draws)}, {1, 600, phase(draws)}});
   bumps_ = SineSum({{0.004, 17, phase(draws)}, {0.006, 31, phase(draws)}});
-  roll_noise_ = SineSum({{0.15 * kDeg, 23, phase(draws)}, {0.3 * kDeg, 190, phase(draws)}});
-  pitch_noise_ = SineSum({{0.1 * kDeg, 19, phase(draws)}, {0.15 * kDeg, 47, phase(draws)}});
+  roll_noise_ = SineSum({{0.15 * kDegree, 23, phase(draws)}, {0.3 * kDegree, 190, phase(draws)}});
+  pitch_noise_ = SineSum({{0.1 * kDegree, 19, phase(draws)}, {0.15 * kDegree, 47, phase(draws)}});
   look_ahead();
 }
 

@@ -2,13 +2,13 @@
 
 #include <cmath>
 
+#include "foucault/core/constants.h"
 #include "foucault/geodesy/wgs84.h"
 #include "foucault/simulation/random.h"
 
 namespace foucault::simulation {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kTwoPi = 2 * kPi;
 
 }  // namespace
@@ -38,7 +38,7 @@ void move_along_earth(Geodetic& position, double north, double east) {
 }
 
 double start_heading(const ScenarioOptions& options) {
-  if (options.heading_deg) return *options.heading_deg * kPi / 180;
+  if (options.heading_deg) return *options.heading_deg * kDegree;
   return Draws(options.seed, RandomStream::heading).uniform(-kPi, kPi);
 }
 

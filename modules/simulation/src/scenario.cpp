@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "airliner.h"
+#include "foucault/core/constants.h"
 #include "foucault/core/error.h"
 #include "foucault/core/so3.h"
 #include "foucault/core/time.h"
@@ -19,8 +20,6 @@ namespace {
 using simulation::Rollout;
 using simulation::RolloutPose;
 
-constexpr double kPi = 3.14159265358979323846;
-constexpr double kDeg = kPi / 180;
 constexpr double kRolloutStep = 0.01;  ///< [s]
 
 /// Stands where it is, a little tilted.
@@ -28,7 +27,7 @@ class Standing : public Rollout {
  public:
   explicit Standing(const ScenarioOptions& options) {
     pose_.position = options.start_position();
-    pose_.euler = {1.0 * kDeg, -0.5 * kDeg, simulation::start_heading(options)};
+    pose_.euler = {1.0 * kDegree, -0.5 * kDegree, simulation::start_heading(options)};
   }
   RolloutPose pose() const override { return pose_; }
   void advance(double) override {}
@@ -69,7 +68,7 @@ const Scenario& find_scenario(const std::string& name) {
 
 Vibration vibration_of(const ScenarioOptions& options) {
   const double w = 2 * kPi * options.vibration_hz;
-  return {options.vibration_hz, options.vibration_m_s2 / (w * w), options.vibration_deg * kDeg};
+  return {options.vibration_hz, options.vibration_m_s2 / (w * w), options.vibration_deg * kDegree};
 }
 
 /// The poses of a roll-out at the knots: at rest before the start, then every knot interval.
@@ -103,7 +102,7 @@ void ScenarioOptions::fields(ConfigFields& f) {
   f.optional_number("heading_deg", heading_deg, {-360, 360}, "at the start; none: by the seed");
   f.number("rest_s", rest_s, kNotNegative, "standing still before the trip");
   f.integer("gps_week", gps_week, {0, 10000}, "start, GPS week");
-  f.number("gps_sow_s", gps_sow_s, {0, 604800}, "start, second of the GPS week");
+  f.number("gps_sow_s", gps_sow_s, {0, kSecondsPerWeek}, "start, second of the GPS week");
   f.number("imu_rate_hz", imu_rate_hz, {10, 10000}, "samples per second");
   f.vector3("mounting_deg", mounting_deg, "roll, pitch, heading of the IMU in the vehicle");
   f.number("scale_factor_sigma_ppm", scale_factor_sigma_ppm, kNotNegative,
@@ -128,7 +127,7 @@ void ScenarioOptions::fields(ConfigFields& f) {
 }
 
 Geodetic ScenarioOptions::start_position() const {
-  return {latitude_deg * kDeg, longitude_deg * kDeg, height_m};
+  return {latitude_deg * kDegree, longitude_deg * kDegree, height_m};
 }
 
 int64_t ScenarioOptions::start_ns() const {
@@ -136,7 +135,7 @@ int64_t ScenarioOptions::start_ns() const {
 }
 
 Eigen::Quaterniond ScenarioOptions::q_v_b() const {
-  const Eigen::Vector3d angles = mounting_deg * kDeg;
+  const Eigen::Vector3d angles = mounting_deg * kDegree;
   return so3::from_euler({angles.x(), angles.y(), angles.z()});
 }
 

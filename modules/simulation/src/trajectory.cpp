@@ -2,12 +2,11 @@
 
 #include <cmath>
 
+#include "foucault/core/constants.h"
 #include "foucault/geodesy/wgs84.h"
 
 namespace foucault::simulation {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 /// Adds amplitude * sin(w t + k pi / 2) on axis k, with its derivatives.
 void add_sine(QuinticSpline::Sample& sample, double amplitude, double frequency_hz, double t) {

@@ -6,14 +6,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "foucault/core/constants.h"
 #include "foucault/core/error.h"
 #include "foucault/core/so3.h"
 #include "foucault/geodesy/local_frame.h"
 
 namespace foucault::simulation {
 namespace {
-
-constexpr double kDeg = 3.14159265358979323846 / 180;
 
 /// Extremes and means of a trip, every 0.1 s.
 struct Summary {
@@ -63,15 +62,15 @@ TEST(Scenario, CityIsACarInACity) {
     EXPECT_GT(s.mean_speed, 8.5);
     EXPECT_LT(s.mean_speed, 11.5);
     EXPECT_LT(s.max_lateral, 4.0);
-    EXPECT_GT(s.max_yaw_rate, 25 * kDeg);
-    EXPECT_LT(s.max_yaw_rate, 35 * kDeg);
-    EXPECT_LT(s.max_roll, 2 * kDeg);
-    EXPECT_LT(s.max_pitch, 3 * kDeg);
+    EXPECT_GT(s.max_yaw_rate, 25 * kDegree);
+    EXPECT_LT(s.max_yaw_rate, 35 * kDegree);
+    EXPECT_LT(s.max_roll, 2 * kDegree);
+    EXPECT_LT(s.max_pitch, 3 * kDegree);
     EXPECT_GT(s.standing, options.rest_s + 30);
     EXPECT_LT(s.standing, 400);
     EXPECT_GT(s.min_height, options.height_m - 16);
     EXPECT_LT(s.max_height, options.height_m + 16);
-    EXPECT_LT(s.max_side_slip, 0.6 * kDeg);
+    EXPECT_LT(s.max_side_slip, 0.6 * kDegree);
   }
 }
 
@@ -94,9 +93,9 @@ TEST(Scenario, AirlinerClimbsCruisesTurnsAndLands) {
   const Summary s = summarize(options);
   EXPECT_NEAR(s.max_speed, 250, 1);
   EXPECT_NEAR(s.max_height, options.height_m + 10000, 2);
-  EXPECT_GT(s.max_roll, 15 * kDeg);
-  EXPECT_LT(s.max_roll, 28 * kDeg);
-  EXPECT_LT(s.max_pitch, 16 * kDeg);
+  EXPECT_GT(s.max_roll, 15 * kDegree);
+  EXPECT_LT(s.max_roll, 28 * kDegree);
+  EXPECT_LT(s.max_pitch, 16 * kDegree);
   EXPECT_GT(s.farthest, 500e3);
   const Motion end = make_trajectory(options).at(3599);
   EXPECT_NEAR(end.position.height, options.height_m, 2);
@@ -121,10 +120,10 @@ TEST(Scenario, StartsWhereAndHowItIsTold) {
     options.longitude_deg = 179.9999;
     options.heading_deg = 77;
     const Motion start = make_trajectory(options).at(0);
-    EXPECT_NEAR(start.position.latitude, -75 * kDeg, 1e-14);
-    EXPECT_NEAR(start.position.longitude, 179.9999 * kDeg, 1e-13);
+    EXPECT_NEAR(start.position.latitude, -75 * kDegree, 1e-14);
+    EXPECT_NEAR(start.position.longitude, 179.9999 * kDegree, 1e-13);
     EXPECT_NEAR(start.position.height, 20, 1e-8);
-    EXPECT_NEAR(so3::to_euler(start.q_n_v).heading, 77 * kDeg, 1e-12);
+    EXPECT_NEAR(so3::to_euler(start.q_n_v).heading, 77 * kDegree, 1e-12);
   }
 }
 

@@ -8,14 +8,13 @@
 #include <random>
 #include <string>
 
+#include "foucault/core/constants.h"
 #include "foucault/core/so3.h"
 #include "foucault/geodesy/wgs84.h"
 #include "foucault/simulation/scenario.h"
 
 namespace foucault::simulation {
 namespace {
-
-constexpr double kDeg = 3.14159265358979323846 / 180;
 
 Eigen::Matrix3d R_e_n(const Motion& motion) {
   return wgs84::R_e_n(motion.position.latitude, motion.position.longitude);
@@ -147,7 +146,7 @@ TEST(Trajectory, AtRestFeelsGravityAndEarthRateOnly) {
 TEST(Trajectory, SplineAnglesAreRollPitchHeading) {
   const std::vector<Eigen::Vector3d> here(8, Eigen::Vector3d::Zero());
   const std::vector<Eigen::Vector3d> angles(8, Eigen::Vector3d(0.1, -0.2, 4.0));
-  const Trajectory truth({50 * kDeg, 8 * kDeg, 100}, QuinticSpline(1, here),
+  const Trajectory truth({50 * kDegree, 8 * kDegree, 100}, QuinticSpline(1, here),
                          QuinticSpline(1, angles));
   const so3::Euler euler = so3::to_euler(truth.at(0.5).q_n_v);
   EXPECT_NEAR(euler.roll, 0.1, 1e-12);

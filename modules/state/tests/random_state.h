@@ -3,13 +3,12 @@
 #include <cmath>
 #include <random>
 
+#include "foucault/core/constants.h"
 #include "foucault/core/so3.h"
 #include "foucault/state/nav_state.h"
 
 /// Random states, errors and covariances for tests.
 namespace foucault::testing {
-
-constexpr double kPi = 3.14159265358979323846;
 
 /// Independent normal numbers.
 inline StateVector draw(std::mt19937& rng, Eigen::Index size) {
@@ -28,8 +27,7 @@ inline double between(std::mt19937& rng, double low, double high) {
 /// Latitudes to +-80 deg, any longitude and attitude, speeds to 250 m/s.
 inline NavState random_state(std::mt19937& rng, Eigen::Index slow_size) {
   NavState x;
-  x.position = {between(rng, -80, 80) * kPi / 180, between(rng, -kPi, kPi),
-                between(rng, -100, 12e3)};
+  x.position = {between(rng, -80, 80) * kDegree, between(rng, -kPi, kPi), between(rng, -100, 12e3)};
   x.velocity_n = between(rng, 0, 250) * draw3(rng).normalized();
   x.q_n_b = Eigen::Quaterniond(Eigen::Vector4d(draw(rng, 4))).normalized();
   x.bias = {1e-2 * draw3(rng), 0.1 * draw3(rng)};

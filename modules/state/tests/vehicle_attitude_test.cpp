@@ -6,10 +6,10 @@
 #include <cmath>
 #include <random>
 
+#include "foucault/core/constants.h"
+
 namespace foucault::state {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 TEST(VehicleAttitude, TurnsTheMountingOut) {
   // An IMU that looks backward, right, up (as RTK car recordings have it) in a vehicle going east.

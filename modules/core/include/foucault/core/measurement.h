@@ -6,6 +6,8 @@
 #include <optional>
 #include <variant>
 
+#include "foucault/core/fix_quality.h"
+
 /// The measurements that walk from a source to an estimator, one value type each.
 namespace foucault {
 
@@ -28,8 +30,6 @@ struct ImuIncrement {
 
   double dt() const { return static_cast<double>(t_end_ns - t_begin_ns) * 1e-9; }  ///< [s]
 };
-
-enum class FixQuality { unknown, single, differential, ppp, float_rtk, fixed_rtk };
 
 /// A GNSS position of the antenna, with velocity where the receiver gives one.
 struct GnssFix {

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "foucault/core/constants.h"
 #include "foucault/core/measurement.h"
 
 namespace foucault {
@@ -10,7 +11,7 @@ namespace foucault {
 /// ellipsoid, where space begins, and not at latitude and longitude zero, which receivers write
 /// while they have no fix.
 inline bool is_position(const Geodetic& position) {
-  constexpr double kPi = 3.14159265358979323846, kHighest = 1e5;
+  constexpr double kHighest = 1e5;  // [m]
   const double latitude = std::abs(position.latitude), longitude = std::abs(position.longitude);
   return latitude <= kPi / 2 && longitude <= 2 * kPi && std::abs(position.height) <= kHighest &&
          latitude + longitude > 0;

@@ -1,6 +1,9 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
+
+#include "foucault/core/constants.h"
 
 /// Stamps and time scales.
 /// Inside Foucault a stamp is `int64_t t_ns`: nanoseconds since 1970-01-01T00:00:00 UTC on the
@@ -9,6 +12,7 @@
 namespace foucault {
 
 constexpr int64_t kNanosecondsPerSecond = 1'000'000'000;
+constexpr int64_t kNanosecondsPerWeek = kSecondsPerWeek * kNanosecondsPerSecond;
 
 /// end - begin [s].
 constexpr double seconds_between(int64_t begin_ns, int64_t end_ns) {
@@ -21,6 +25,12 @@ int64_t nanoseconds(double seconds);
 
 /// The stamp as seconds [s]; good to about 0.2 us for today's dates.
 constexpr double to_seconds(int64_t t_ns) { return static_cast<double>(t_ns) / 1e9; }
+
+/// The stamp in messages for people, everywhere in this form: `2024-05-01T12:34:56.789Z`, what is
+/// below a millisecond cut off.
+std::string utc_text(int64_t t_ns);
+
+constexpr int64_t kGpsEpochNs = 315'964'800 * kNanosecondsPerSecond;  ///< 1980-01-06
 
 /// GPS time: full week count since 1980-01-06 and second of week, kept in nanoseconds.
 struct GpsTime {

@@ -1,0 +1,178 @@
+#include "../src/initial_state.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <random>
+
+#include "foucault/core/constants.h"
+#include "foucault/core/so3.h"
+#include "foucault/geodesy/course.h"
+#include "foucault/geodesy/local_frame.h"
+#include "foucault/geodesy/wgs84.h"
+#include "foucault/state/nav_state.h"
+
+namespace foucault::alignment {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Quaterniond;
+using Eigen::Vector3d;
+
+/// A true state, and findings about it with errors drawn from what they say of themselves.
+class InitialStateTest : public ::testing::Test {
+ protected:
+  InitialStateTest() {
+    noise_.gyro_turn_on_sigma = 2e-3;
+    noise_.accel_turn_on_sigma = 0.02;
+    noise_.gyro_bias_sigma = noise_.accel_bias_sigma = 1e-6;
+    true_.position = {48 * kDegree, 9 * kDegree, 300};
+    true_.q_n_b = so3::from_euler({0.01, -0.02, 0.7}) * q_v_b_;
+  }
+
+  Vector3d draw(double sigma) {
+    return sigma * Vector3d(normal_(rng_), normal_(rng_), normal_(rng_));
+  }
+
+  AlignmentFindings draw_findings(bool course) {
+    true_.bias = {draw(noise_.gyro_turn_on_sigma), draw(noise_.accel_turn_on_sigma)};
+    const Vector3d lever(0.5, -0.4, -1.1), acceleration(0.4, 0.3, -0.1);
+    AlignmentFindings f;
+    f.q_v_b = q_v_b_;
+    f.omega_b = Vector3d(0.02, -0.03, 0.05);
+    f.fix.p_b_a = lever;
+    const Vector3d swing_n = true_.q_n_b * f.omega_b.cross(lever);
+    const Vector3d forward_n = true_.q_n_b * (q_v_b_.conjugate() * Vector3d::UnitX());
+    true_.velocity_n = 10 * forward_n;
+    const Vector3d antenna_n = true_.velocity_n + swing_n;
+
+    const Vector3d dv = draw(0.05), da = 0.3 * dv + draw(0.02);
+    f.motion_covariance.topLeftCorner<3, 3>() = 2.5e-3 * Matrix3d::Identity();
+    f.motion_covariance.topRightCorner<3, 3>() = 7.5e-4 * Matrix3d::Identity();
+    f.motion_covariance.bottomLeftCorner<3, 3>() = 7.5e-4 * Matrix3d::Identity();
+    f.motion_covariance.bottomRightCorner<3, 3>() = (2.25e-4 + 4e-4) * Matrix3d::Identity();
+    f.antenna_velocity_n = antenna_n - dv;
+    const Geodetic antenna =
+        LocalFrame(true_.position).to_geodetic(true_.q_n_b * lever + draw(0.02));
+    f.fix.antenna = antenna;
+    f.fix.position_covariance = 4e-4 * Matrix3d::Identity();
+
+    f.acceleration_n = acceleration;
+    f.antenna_velocity_n = antenna_n;
+    const Vector3d force_b = true_.q_n_b.conjugate() * specific_force_n(f);
+    f.acceleration_n -= da;
+    f.antenna_velocity_n -= dv;
+    const Vector3d anomaly = 5e-4 * normal_(rng_) * force_b.normalized();
+    f.specific_force_b = force_b + true_.bias.accel + draw(0.01) + anomaly;
+    f.specific_force_covariance = 1e-4 * Matrix3d::Identity();
+
+    const double own_sigma = course ? 0.005 : 0.02;
+    const Vector3d seen_n = course ? Vector3d(f.antenna_velocity_n - swing_n) : forward_n;
+    f.heading = azimuth(seen_n) + own_sigma * normal_(rng_);
+    f.heading_variance = own_sigma * own_sigma;
+    if (course) f.heading_by_velocity = Vector3d(-seen_n.y(), seen_n.x(), 0) / seen_n.squaredNorm();
+
+    f.turn_n = Vector3d(0, 0, 0.05);
+    const Vector3d rate_n = wgs84::earth_rate_n(antenna.latitude) + f.turn_n;
+    f.gyro_b = true_.q_n_b.conjugate() * rate_n + true_.bias.gyro + draw(5e-4);
+    f.gyro_covariance = 2.5e-7 * Matrix3d::Identity();
+    return f;
+  }
+
+  double mean_nees(bool course) {
+    double sum = 0;
+    constexpr int kRuns = 400;
+    for (int run = 0; run < kRuns; ++run) {
+      const Epoch epoch = initial_state(draw_findings(course), noise_);
+      const NodeVector error = boxminus(true_, epoch);
+      const NodeMatrix P = epoch.covariance;
+      sum += error.dot(P.ldlt().solve(error));
+    }
+    return sum / kRuns;
+  }
+
+  std::mt19937 rng_{42};
+  std::normal_distribution<double> normal_;
+  Quaterniond q_v_b_ = so3::from_euler({0.2, 0.1, -0.5});
+  ImuNoise noise_;
+  NavState true_;
+};
+
+/// 400 chi-squares of 15 have a mean within 15 +- 0.9, 99.9 %.
+TEST_F(InitialStateTest, ErrorsAreThoseOfTheCovariance) {
+  EXPECT_NEAR(mean_nees(false), 15, 0.9) << "a heading by itself";
+  EXPECT_NEAR(mean_nees(true), 15, 0.9) << "a heading along the velocity";
+}
+
+/// Negative control: without what a level error shares with the accelerometers' bias.
+TEST_F(InitialStateTest, CorrelationsMatter) {
+  double sum = 0;
+  constexpr int kRuns = 100;
+  for (int run = 0; run < kRuns; ++run) {
+    const Epoch epoch = initial_state(draw_findings(true), noise_);
+    NodeMatrix P = epoch.covariance;
+    part(P, block::attitude, block::accel_bias).setZero();
+    part(P, block::accel_bias, block::attitude).setZero();
+    const NodeVector error = boxminus(true_, epoch);
+    sum += error.dot(P.ldlt().solve(error));
+  }
+  EXPECT_GT(std::abs(sum / kRuns - 15), 3);
+}
+
+TEST_F(InitialStateTest, AGyroBiasBeyondItsPriorIsBelieved) {
+  AlignmentFindings f = draw_findings(false);
+  const Vector3d large(0.05, 0, 0);
+  f.gyro_b += large;
+  const Epoch epoch = initial_state(f, noise_);
+  EXPECT_LT((epoch.bias.gyro - true_.bias.gyro - large).norm(), 3e-3);
+}
+
+TEST_F(InitialStateTest, AnAccelerometerBiasBeyondItsPriorWidensIt) {
+  AlignmentFindings f = draw_findings(false);
+  const double before = initial_state(f, noise_).sigma_of(block::accel_bias).maxCoeff();
+  f.specific_force_b *= 1.1;  // 1 m/s^2 too long
+  const Epoch epoch = initial_state(f, noise_);
+  EXPECT_GT(epoch.sigma_of(block::accel_bias).maxCoeff(), 5 * before);
+  EXPECT_NEAR(epoch.bias.accel.dot(f.specific_force_b.normalized()), 0.98, 0.1);
+}
+
+/// Position and velocity of the IMU err by the attitude through the lever arm.
+TEST_F(InitialStateTest, GivenAnglesErrAsTheySay) {
+  double sum = 0;
+  constexpr int kRuns = 400;
+  const Vector3d sigma(0.01, 0.02, 0.03);
+  const so3::Euler truth = so3::to_euler(true_.q_n_b * q_v_b_.conjugate());
+  for (int run = 0; run < kRuns; ++run) {
+    AlignmentFindings f = draw_findings(false);
+    const Vector3d d = draw(1).cwiseProduct(sigma);
+    const GivenAngles given{GivenAngle{truth.roll + d.x(), sigma.x()},
+                            GivenAngle{truth.pitch + d.y(), sigma.y()},
+                            GivenAngle{truth.heading + d.z(), sigma.z()}};
+    const Epoch epoch = given_state(f.fix, f.antenna_velocity_n, 2.5e-3 * Matrix3d::Identity(),
+                                    f.omega_b, q_v_b_, given, noise_);
+    const NodeVector error = boxminus(true_, epoch);
+    const NodeMatrix P = epoch.covariance;
+    sum += error.dot(P.ldlt().solve(error));
+  }
+  EXPECT_NEAR(sum / kRuns, 15, 0.9);
+}
+
+TEST_F(InitialStateTest, AGivenAngleTakesThePlaceOfTheOneFound) {
+  const Epoch found = initial_state(draw_findings(false), noise_);
+  GivenAngles given;
+  EXPECT_EQ(with_given_angles(found, q_v_b_, given).covariance, found.covariance);
+  given.pitch = GivenAngle{0.1, 0.004};
+  const Epoch epoch = with_given_angles(found, q_v_b_, given);
+  const so3::Euler before = so3::to_euler(found.q_n_b * q_v_b_.conjugate());
+  const so3::Euler after = so3::to_euler(epoch.q_n_b * q_v_b_.conjugate());
+  EXPECT_NEAR(after.roll, before.roll, 1e-12);
+  EXPECT_NEAR(after.pitch, 0.1, 1e-12);
+  EXPECT_NEAR(after.heading, before.heading, 1e-12);
+  const Matrix3d by_b = so3::euler_jacobian(before) * q_v_b_.toRotationMatrix();
+  const Matrix3d of_angles = by_b * epoch.covariance_of(block::attitude) * by_b.transpose();
+  EXPECT_NEAR(std::sqrt(of_angles(1, 1)), 0.004, 1e-9);
+  EXPECT_NEAR(of_angles(0, 1), 0, 1e-12);
+}
+
+}  // namespace
+}  // namespace foucault::alignment
