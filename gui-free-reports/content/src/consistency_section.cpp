@@ -8,7 +8,7 @@
 #include <optional>
 #include <utility>
 
-#include "foucault/plot/ticks.h"
+#include "foucault/plot/text.h"
 #include "run_panels.h"
 
 namespace foucault::content {
@@ -30,10 +30,9 @@ std::string band_text(const Band& band) {
 
 std::string size_verdict(const SquareConsistency& nis) {
   const std::string mean = fmt::format("The mean NIS, {}, lies ", significant_text(nis.mean));
-  const std::string band = fmt::format(
-      " the band that holds it with 95 % if the covariances are "
-      "right, {}: ",
-      band_text(nis.mean_band));
+  const std::string band =
+      fmt::format(" the band that holds it with 95 % if the covariances are right, {}: ",
+                  band_text(nis.mean_band));
   if (nis.mean > nis.mean_band.high) {
     return mean + "above" + band +
            "innovations are larger than predicted; the sigmas of the fixes or of the IMU are too "
@@ -56,8 +55,7 @@ std::string tail_verdict(const std::array<ResidualStatistics, 3>& innovations) {
   if (largest < kHeavy) return {};
   return fmt::format(
       " Their tails are heavier than a Gaussian's (excess kurtosis up to {}): now and then they "
-      "are "
-      "much larger than predicted.",
+      "are much larger than predicted.",
       significant_text(largest, 2));
 }
 
@@ -228,8 +226,7 @@ double largest_finite(const std::vector<double>& values) {
 Axis square_axis(const std::string& label, const std::vector<double>& values, double largest) {
   constexpr double kLowest = 0.03;  // 0.15 % of chi-square with 3 degrees lie below
   constexpr double kHighest = 1e3;
-  Axis axis = value_axis(label, "");
-  axis.kind = AxisKind::log;
+  Axis axis{label, {}, AxisKind::log};
   axis.min = std::min(kLowest, low_value(values, 0.01));
   axis.max = 1.5 * std::clamp(largest, 20.0, kHighest);
   return axis;
@@ -249,12 +246,8 @@ void add_bounds(const Band& band, const std::string& label, const std::vector<do
 }
 
 Series running_mean_band(const DecimatedTable::Rows& rows, const Band& band) {
-  Series series;
-  series.label = fmt::format("95 % for the mean of {}", kRunningMeanFixes);
-  series.column = "running mean 95 %";
-  series.mark = Mark::band;
-  series.ink = Ink::sky;
-  series.opacity = 0.35;
+  Series series =
+      pale_band(fmt::format("95 % for the mean of {}", kRunningMeanFixes), "running mean 95 %");
   series.x = {rows.x.front(), rows.x.back()};
   series.lower = {band.low, band.low};
   series.upper = {band.high, band.high};
@@ -288,16 +281,14 @@ Panel nis_panel(const RunData& data, const Consistency& c) {
 std::optional<Figure> nis_figure(const RunData& data, const Consistency& c,
                                  const std::string& subtitle) {
   if (data.nis.empty() && data.rejected_nis.empty()) return std::nullopt;
-  Figure figure;
-  figure.name = "nis";
-  figure.title = "Normalized innovation squared (NIS)";
-  figure.subtitle = subtitle;
-  figure.caption = fmt::format(
-      "Innovation of each fix, squared by its covariance: chi-square of three degrees if that is "
-      "right. 95 % of the used fixes then lie between the dashed lines, and 95 % of the means of "
-      "{} in the band, if they are independent. A level above means sigmas too small, below too "
-      "large; patterns in time mean errors that are not modelled.",
-      kRunningMeanFixes);
+  Figure figure{
+      "nis", "Normalized innovation squared (NIS)", subtitle,
+      fmt::format(
+          "Innovation of each fix, squared by its covariance: chi-square of three degrees if that "
+          "is right. 95 % of the used fixes then lie between the dashed lines, and 95 % of the "
+          "means of {} in the band, if they are independent. A level above means sigmas too small, "
+          "below too large; patterns in time mean errors that are not modelled.",
+          kRunningMeanFixes)};
   figure.height_mm = 105;
   figure.panels = {nis_panel(data, c)};
   return figure;
@@ -318,12 +309,12 @@ Panel nees_panel(const RunData& data, const DecimatedTable& table, const std::st
 
 std::optional<Figure> nees_figure(const RunData& data, const Consistency& c,
                                   const std::string& subtitle) {
-  Figure figure = stacked_figure("nees", "Normalized estimation error squared (NEES)", subtitle);
-  figure.caption =
-      "Error against the reference, squared by its covariance, with the bounds of 95 % (dashed). "
-      "Errors last, so the curves wander and their means vary more than those of as many "
-      "independent errors would. Far above: the estimator is too sure of itself; far below: not "
-      "sure enough.";
+  Figure figure =
+      stacked_figure("nees", "Normalized estimation error squared (NEES)", subtitle,
+                     "Error against the reference, squared by its covariance, with the bounds of "
+                     "95 % (dashed). Errors last, so the curves wander and their means vary more "
+                     "than those of as many independent errors would. Far above: the estimator is "
+                     "too sure of itself; far below: not sure enough.");
   if (!data.position_nees.empty()) {
     figure.panels.push_back(
         nees_panel(data, data.position_nees, "Position", c.position_nees, c.single_band));
@@ -345,11 +336,7 @@ std::optional<Figure> nees_figure(const RunData& data, const Consistency& c,
 
 /// Height of each bin, as two corners.
 Series density(const ResidualStatistics& s, const std::string& column) {
-  Series series;
-  series.label = "whitened innovations";
-  series.column = column + " density";
-  series.mark = Mark::band;
-  series.ink = Ink::blue;
+  Series series{"whitened innovations", column + " density", Mark::band, Ink::blue};
   series.opacity = 0.55;
   const double scale = 1 / (static_cast<double>(s.samples) * ResidualHistogram::kWidth);
   for (size_t i = 0; i < ResidualHistogram::kBins; ++i) {
@@ -383,10 +370,10 @@ Panel histogram_panel(const ResidualStatistics& s, size_t axis, double top) {
   panel.title = kNed[axis];
   panel.note = fmt::format("{} ± {}", number_text(s.mean, 2), number_text(s.sigma, 2));
   if (s.histogram.outside > 0) panel.note += fmt::format(" · {} beyond", s.histogram.outside);
-  panel.x = value_axis("Whitened innovation", "σ");
+  panel.x = {"Whitened innovation", "σ"};
   panel.x.min = -ResidualHistogram::kLimit;
   panel.x.max = ResidualHistogram::kLimit;
-  panel.y = value_axis("Density", "");
+  panel.y = {"Density", ""};
   panel.y.min = 0;
   panel.y.max = top;
   panel.series = {density(s, kNed[axis]), gaussian_density()};
@@ -394,11 +381,8 @@ Panel histogram_panel(const ResidualStatistics& s, size_t axis, double top) {
 }
 
 Series lags(const ResidualAutocorrelation& a, size_t axis) {
-  Series series;
-  series.label = "autocorrelation";
-  series.column = std::string(kNed[axis]) + " autocorrelation";
-  series.mark = Mark::bars;
-  series.ink = Ink::blue;
+  Series series{"autocorrelation", std::string(kNed[axis]) + " autocorrelation", Mark::bars,
+                Ink::blue};
   for (size_t k = 0; k < a.lag.size(); ++k) {
     series.x.push_back(static_cast<double>(k + 1));
     series.y.push_back(a.lag[k][static_cast<Eigen::Index>(axis)]);
@@ -407,12 +391,7 @@ Series lags(const ResidualAutocorrelation& a, size_t axis) {
 }
 
 Series white_band(const ResidualAutocorrelation& a, const std::string& column) {
-  Series series;
-  series.label = "95 % of white noise";
-  series.column = column + " white noise";
-  series.mark = Mark::band;
-  series.ink = Ink::sky;
-  series.opacity = 0.35;
+  Series series = pale_band("95 % of white noise", column + " white noise");
   series.x = {0.5, static_cast<double>(a.lag.size()) + 0.5};
   series.lower = {-a.white_bound, -a.white_bound};
   series.upper = {a.white_bound, a.white_bound};
@@ -427,8 +406,8 @@ double share_outside(const Series& series, double bound) {
 
 Panel autocorrelation_panel(const ResidualAutocorrelation& a, size_t axis, const Band& range) {
   Panel panel;
-  panel.x = value_axis("Lag", "fixes");
-  panel.y = value_axis("Autocorrelation", "");
+  panel.x = {"Lag", "fixes"};
+  panel.y = {"Autocorrelation", ""};
   panel.y.min = range.low;
   panel.y.max = range.high;
   panel.series = {white_band(a, kNed[axis]), lags(a, axis)};
@@ -460,16 +439,13 @@ double highest_density(const std::array<ResidualStatistics, 3>& innovations) {
 
 std::optional<Figure> whiteness_figure(const Consistency& c, const std::string& subtitle) {
   if (c.innovations[0].samples == 0) return std::nullopt;
-  Figure figure;
-  figure.name = "innovation_whiteness";
-  figure.title = "Whitened innovations: distribution and autocorrelation";
-  figure.subtitle = subtitle;
-  figure.caption =
-      "Above: histogram of the innovations in units of their predicted sigmas, mean ± standard "
-      "deviation at the right (beyond: how many lie outside of the axis); a flatter one than N(0, "
-      "1) means sigmas too small, a steeper one "
-      "too large. Below: their autocorrelation over the lag. That of white noise lies in the band "
-      "at 95 % of the lags; a slow decay means errors that last from fix to fix.";
+  Figure figure{"innovation_whiteness", "Whitened innovations: distribution and autocorrelation",
+                subtitle,
+                "Above: histogram of the innovations in units of their predicted sigmas, mean ± "
+                "standard deviation at the right (beyond: how many lie outside of the axis); a "
+                "flatter one than N(0, 1) means sigmas too small, a steeper one too large. Below: "
+                "their autocorrelation over the lag. That of white noise lies in the band at 95 % "
+                "of the lags; a slow decay means errors that last from fix to fix."};
   figure.columns = 3;
   const double top = 1.08 * highest_density(c.innovations);
   for (size_t i = 0; i < 3; ++i) {
@@ -488,8 +464,7 @@ std::optional<Figure> whiteness_figure(const Consistency& c, const std::string& 
 }  // namespace
 
 Section consistency_section(const RunData& data, const std::string& subtitle) {
-  Section section;
-  section.title = "Consistency";
+  Section section{"Consistency"};
   if (!data.consistency) return section;
   const Consistency& c = *data.consistency;
   if (c.nis.samples > 0) {

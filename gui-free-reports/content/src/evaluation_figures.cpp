@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "foucault/content/evaluation_report.h"
-#include "foucault/plot/ticks.h"
+#include "foucault/plot/text.h"
 #include "map_unit.h"
+#include "series.h"
 
 namespace foucault::content {
 
@@ -15,17 +15,8 @@ using namespace page;
 
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr size_t kGrowthPoints = 60;
 constexpr size_t kMostCurves = 120;  // in a panel
-
-Axis axis(const std::string& label, const std::string& unit, AxisKind kind = AxisKind::linear) {
-  Axis result;
-  result.label = label;
-  result.unit = unit;
-  result.kind = kind;
-  return result;
-}
 
 /// The look of a method's curves: its colour, and a dash on every other one so that curves that
 /// coincide are both seen.
@@ -58,9 +49,9 @@ double value_at(const OutageCurve& curve, Component component, double t) {
   const std::vector<double>& times = curve.since_begin_s;
   const std::vector<double>& values = curve.*component;
   const auto after = std::lower_bound(times.begin(), times.end(), t);
-  if (after == times.end()) return kNaN;
+  if (after == times.end()) return kNoValue;
   const auto i = static_cast<size_t>(after - times.begin());
-  if (i == 0) return times[0] == t ? values[0] : kNaN;
+  if (i == 0) return times[0] == t ? values[0] : kNoValue;
   const double share = (t - times[i - 1]) / (times[i] - times[i - 1]);
   return values[i - 1] + share * (values[i] - values[i - 1]);
 }
@@ -83,7 +74,7 @@ double rms_at(const MethodCurves& curves, Component component, double t) {
     sum += value * value;
     ++count;
   }
-  return count > 0 ? std::sqrt(sum / static_cast<double>(count)) : kNaN;
+  return count > 0 ? std::sqrt(sum / static_cast<double>(count)) : kNoValue;
 }
 
 void fill_rms(const MethodCurves& curves, Component component, const std::vector<double>& times,
@@ -120,10 +111,7 @@ std::vector<const OutageCurve*> shown_curves(const MethodCurves& curves, Maximum
 
 /// Outages as one series, a gap between two.
 Series outage_series(const MethodCurves& curves, Component component, Maximum maximum, Ink ink) {
-  Series series;
-  series.label = "each outage";
-  series.column = curves.method + " outages";
-  series.ink = ink;
+  Series series{"each outage", curves.method + " outages", Mark::line, ink};
   series.size = 0.9;
   series.opacity = 0.35;
   for (const OutageCurve* curve : shown_curves(curves, maximum)) {
@@ -132,7 +120,7 @@ Series outage_series(const MethodCurves& curves, Component component, Maximum ma
     series.x.insert(series.x.end(), times.begin(), times.end());
     series.y.insert(series.y.end(), values.begin(), values.end());
     series.x.push_back(times.empty() ? 0 : times.back());
-    series.y.push_back(kNaN);
+    series.y.push_back(kNoValue);
   }
   return series;
 }
@@ -163,9 +151,9 @@ Panel curve_panel(const MethodCurves& curves, const MethodOrder& order, Componen
   fill_rms(curves, component, even_times(longest(curves)), rms);
 
   Panel panel;
-  panel.x = axis("Time in outage", "s");
+  panel.x = {"Time in outage", "s"};
   panel.x.min = 0;
-  panel.y = axis(y_label, "m");
+  panel.y = {y_label, "m"};
   panel.y.min = 0;
   panel.y.max = top > 0 ? 1.06 * top : 1;
   panel.legend = LegendPlace::none;
@@ -182,16 +170,12 @@ std::string outages_text(const DriftCase& drift_case) {
 }  // namespace
 
 Figure drift_curves(const DriftCase& drift_case, const MethodOrder& order) {
-  Figure figure;
-  figure.name = "drift_curves_" + file_part(drift_case.name);
-  figure.title = "Drift during outages";
-  figure.subtitle = outages_text(drift_case);
-  figure.caption =
-      "Position error from the beginning of each outage: a thin line an outage, the thick line "
-      "their RMS; the figure above each panel is the RMS of the maxima. Equal axes for all "
-      "methods. Drift that grows evenly is normal; one line far "
-      "above "
-      "the rest is an outage worth a look.";
+  Figure figure{"drift_curves_" + file_part(drift_case.name), "Drift during outages",
+                outages_text(drift_case),
+                "Position error from the beginning of each outage: a thin line an outage, the "
+                "thick line their RMS; the figure above each panel is the RMS of the maxima. Equal "
+                "axes for all methods. Drift that grows evenly is normal; one line far above the "
+                "rest is an outage worth a look."};
   for (const MethodCurves& curves : drift_case.methods) {
     if (curves.outages.size() <= kMostCurves) continue;
     figure.caption += fmt::format(
@@ -226,8 +210,8 @@ Panel maximum_panel(const DriftCase& drift_case, const MethodOrder& order, Maxim
                     const std::string& label) {
   constexpr Shape kShapes[] = {Shape::dot, Shape::diamond, Shape::square, Shape::triangle};
   Panel panel;
-  panel.x = axis("Outage", "");
-  panel.y = axis(label, "m", AxisKind::log);
+  panel.x = {"Outage", ""};
+  panel.y = {label, "m", AxisKind::log};
   for (size_t m = 0; m < drift_case.methods.size(); ++m) {
     const MethodCurves& curves = drift_case.methods[m];
     Series series = method_series(curves.method, order);
@@ -247,13 +231,11 @@ Panel maximum_panel(const DriftCase& drift_case, const MethodOrder& order, Maxim
 }  // namespace
 
 Figure maximum_drifts(const DriftCase& drift_case, const MethodOrder& order) {
-  Figure figure;
-  figure.name = "maximum_drifts_" + file_part(drift_case.name);
-  figure.title = "Maximum drift of each outage";
-  figure.subtitle = outages_text(drift_case);
-  figure.caption =
+  Figure figure{
+      "maximum_drifts_" + file_part(drift_case.name), "Maximum drift of each outage",
+      outages_text(drift_case),
       "The largest error within each outage, outages in order of time. Methods whose points lie on "
-      "each other drift alike; the difference that matters is the one seen in nearly all outages.";
+      "each other drift alike; the difference that matters is the one seen in nearly all outages."};
   figure.height_mm = 140;
   figure.share_x = true;
   figure.panels = {
@@ -268,8 +250,8 @@ namespace {
 Panel distribution_panel(const DriftCase& drift_case, const MethodOrder& order, Maximum maximum,
                          const std::string& label) {
   Panel panel;
-  panel.x = axis(label + " maximum drift", "m", AxisKind::log);
-  panel.y = axis("Share of outages", "%");
+  panel.x = {label + " maximum drift", "m", AxisKind::log};
+  panel.y = {"Share of outages", "%"};
   panel.y.min = 0;
   panel.y.max = 103;
   for (const MethodCurves& curves : drift_case.methods) {
@@ -299,13 +281,11 @@ Panel distribution_panel(const DriftCase& drift_case, const MethodOrder& order, 
 }  // namespace
 
 Figure drift_distribution(const DriftCase& drift_case, const MethodOrder& order) {
-  Figure figure;
-  figure.name = "drift_distribution_" + file_part(drift_case.name);
-  figure.title = "Distribution of the maximum drift";
-  figure.subtitle = outages_text(drift_case);
-  figure.caption =
+  Figure figure{
+      "drift_distribution_" + file_part(drift_case.name), "Distribution of the maximum drift",
+      outages_text(drift_case),
       "Share of the outages whose maximum drift is at most the value on the axis. A curve further "
-      "left is better; where two curves cross, neither method is better throughout.";
+      "left is better; where two curves cross, neither method is better throughout."};
   figure.height_mm = 120;
   figure.columns = 2;
   figure.panels = {
@@ -332,8 +312,8 @@ std::vector<double> growth_times(double length) {
 Panel growth_panel(const DriftCase& drift_case, const MethodOrder& order, Component component,
                    const std::string& label) {
   Panel panel;
-  panel.x = axis("Time in outage", "s", AxisKind::log);
-  panel.y = axis(label + " RMS", "m", AxisKind::log);
+  panel.x = {"Time in outage", "s", AxisKind::log};
+  panel.y = {label + " RMS", "m", AxisKind::log};
   for (const MethodCurves& curves : drift_case.methods) {
     const double length = longest(curves);
     if (length <= 0) continue;
@@ -347,14 +327,11 @@ Panel growth_panel(const DriftCase& drift_case, const MethodOrder& order, Compon
 }  // namespace
 
 Figure drift_growth(const DriftCase& drift_case, const MethodOrder& order) {
-  Figure figure;
-  figure.name = "drift_growth_" + file_part(drift_case.name);
-  figure.title = "Growth of the drift";
-  figure.subtitle = outages_text(drift_case);
-  figure.caption =
+  Figure figure{
+      "drift_growth_" + file_part(drift_case.name), "Growth of the drift", outages_text(drift_case),
       "RMS over the outages against the time without GNSS. The slope tells the cause: white noise "
       "of the accelerometer grows with t to the power of 1.5, a tilt or accelerometer bias with t "
-      "squared, a gyroscope bias (or an Earth rate left out) with t cubed.";
+      "squared, a gyroscope bias (or an Earth rate left out) with t cubed."};
   figure.height_mm = 120;
   figure.columns = 2;
   figure.panels = {
@@ -379,9 +356,9 @@ std::vector<std::string> case_names(const std::vector<DriftRms>& rms) {
 Panel bar_panel(const std::vector<DriftRms>& rms, const MethodOrder& order,
                 Bounded DriftRms::*component, const std::string& label) {
   Panel panel;
-  panel.x = axis("", "", AxisKind::category);
+  panel.x = {"", "", AxisKind::category};
   panel.x.categories = case_names(rms);
-  panel.y = axis(label, "m");
+  panel.y = {label, "m"};
   panel.y.from_zero = true;
   for (const std::string& method : order) {
     Series series = method_series(method, order);
@@ -405,12 +382,11 @@ Panel bar_panel(const std::vector<DriftRms>& rms, const MethodOrder& order,
 }  // namespace
 
 Figure drift_bars(const std::vector<DriftRms>& rms, const MethodOrder& order) {
-  Figure figure;
-  figure.name = "drift_rms";
-  figure.title = "RMS of the maximum drift";
-  figure.caption =
-      "Root mean square over the outages of the largest error in each, with the 95 % bootstrap "
-      "interval: the paper's Table III as a figure.";
+  Figure figure{"drift_rms",
+                "RMS of the maximum drift",
+                {},
+                "Root mean square over the outages of the largest error in each, with the 95 % "
+                "bootstrap interval: the paper's Table III as a figure."};
   figure.height_mm = 165;
   figure.share_x = true;
   figure.panels = {
@@ -427,10 +403,7 @@ using DistanceNumber = Bounded DistanceDrift::Bin::*;
 
 /// The outages behind the bins, faint.
 Series outages_by_distance(const DistanceDrift::Method& method, DistanceColumn column, Ink ink) {
-  Series series;
-  series.mark = Mark::points;
-  series.column = method.method + " outage";
-  series.ink = ink;
+  Series series{{}, method.method + " outage", Mark::points, ink};
   series.size = 3.2;
   series.opacity = 0.3;
   series.range_role = RangeRole::most;
@@ -472,9 +445,9 @@ Panel distance_panel(const DistanceDrift& drift, const MethodOrder& order, Dista
                      DistanceNumber number, const std::string& label) {
   constexpr double kShift = 0.006;  // of the axis
   Panel panel;
-  panel.x = axis("Distance from the start", "km");
+  panel.x = {"Distance from the start", "km"};
   panel.x.from_zero = true;
-  panel.y = axis(label, "m", AxisKind::log);
+  panel.y = {label, "m", AxisKind::log};
   const double middle = 0.5 * (static_cast<double>(drift.methods.size()) - 1);
   std::vector<Series> over;
   for (size_t m = 0; m < drift.methods.size(); ++m) {
@@ -498,15 +471,12 @@ Panel distance_panel(const DistanceDrift& drift, const MethodOrder& order, Dista
 
 Figure drift_by_distance(const DistanceDrift& drift, const MethodOrder& order) {
   const size_t outages = drift.methods.empty() ? 0 : drift.methods[0].distance_km.size();
-  Figure figure;
-  figure.name = "drift_by_distance_" + file_part(drift.name);
-  figure.title = "Drift against distance from the start";
-  figure.subtitle = fmt::format("{} · {} outages", drift.name, outages);
-  figure.caption =
-      "The largest drift of each outage (faint) and its root mean square over neighbouring outages "
-      "with the 95 % bootstrap interval. A method that is right everywhere on Earth drifts alike "
-      "at "
-      "every distance.";
+  Figure figure{"drift_by_distance_" + file_part(drift.name),
+                "Drift against distance from the start",
+                fmt::format("{} · {} outages", drift.name, outages),
+                "The largest drift of each outage (faint) and its root mean square over "
+                "neighbouring outages with the 95 % bootstrap interval. A method that is right "
+                "everywhere on Earth drifts alike at every distance."};
   figure.height_mm = 165;
   figure.share_x = true;
   figure.panels = {
@@ -525,20 +495,13 @@ using NormalizedColumn = std::vector<Bounded> NormalizedErrors::Method::*;
 /// The band of each time; that of the first method which has one, as all have the same outages.
 Series normalized_band(const NormalizedErrors& errors, NormalizedColumn column) {
   constexpr double kHalfWidth = 0.42;  // of the place of a time
-  Series band;
-  band.label = "95 % if the sigmas are right";
-  band.column = "band";
-  band.mark = Mark::band;
-  band.ink = Ink::sky;
-  band.opacity = 0.35;
+  Series band = pale_band("95 % if the sigmas are right", "band");
   for (size_t i = 0; i < errors.times.size(); ++i) {
     for (const NormalizedErrors::Method& method : errors.methods) {
       const Bounded& number = (method.*column)[i];
       if (!std::isfinite(number.low)) continue;
       const auto centre = static_cast<double>(i);
-      band.x.insert(band.x.end(), {centre - kHalfWidth, centre + kHalfWidth, centre + kHalfWidth});
-      band.lower.insert(band.lower.end(), {number.low, number.low, kNaN});
-      band.upper.insert(band.upper.end(), {number.high, number.high, kNaN});
+      add_level(centre - kHalfWidth, centre + kHalfWidth, number.low, number.high, band);
       break;
     }
   }
@@ -550,9 +513,9 @@ Panel normalized_panel(const NormalizedErrors& errors, const MethodOrder& order,
   constexpr double kSpread = 0.5;  // of the place of a time
   Panel panel;
   panel.title = label;
-  panel.x = axis("Time in outage", "", AxisKind::category);
+  panel.x = {"Time in outage", "", AxisKind::category};
   panel.x.categories = errors.times;
-  panel.y = axis("Mean square over sigma²", "", AxisKind::log);
+  panel.y = {"Mean square over sigma²", "", AxisKind::log};
   panel.series.push_back(normalized_band(errors, column));
   const auto count = static_cast<double>(errors.methods.size());
   for (size_t m = 0; m < errors.methods.size(); ++m) {
@@ -574,15 +537,12 @@ Panel normalized_panel(const NormalizedErrors& errors, const MethodOrder& order,
 }  // namespace
 
 Figure normalized_drift(const NormalizedErrors& errors, const MethodOrder& order) {
-  Figure figure;
-  figure.name = "normalized_drift_" + file_part(errors.name);
-  figure.title = "Errors in outages over their sigmas";
-  figure.subtitle = errors.name;
-  figure.caption =
-      "Mean over the outages of the squared error over its variance, per degree of freedom, at "
-      "some times in the outage. Right sigmas give 1 (dashed), within the band with 95 %. Points "
-      "that leave the band upwards with time tell a noise of the IMU that fits over a second and "
-      "not over a minute.";
+  Figure figure{"normalized_drift_" + file_part(errors.name), "Errors in outages over their sigmas",
+                errors.name,
+                "Mean over the outages of the squared error over its variance, per degree of "
+                "freedom, at some times in the outage. Right sigmas give 1 (dashed), within the "
+                "band with 95 %. Points that leave the band upwards with time tell a noise of the "
+                "IMU that fits over a second and not over a minute."};
   figure.height_mm = 110;
   figure.columns = 2;
   figure.panels = {
@@ -594,8 +554,8 @@ Figure normalized_drift(const NormalizedErrors& errors, const MethodOrder& order
 
 Figure error_timeline(const ErrorTimeline& timeline, const MethodOrder& order) {
   Panel panel;
-  panel.x = axis("Time since start", "s", AxisKind::duration);
-  panel.y = axis("Horizontal error", "m", AxisKind::log);
+  panel.x = time_axis();
+  panel.y = {"Horizontal error", "m", AxisKind::log};
   for (const TimeSpan& outage : timeline.outages) {
     panel.shades.push_back({outage.begin_s, outage.end_s, "GNSS withheld", Ink::gray});
   }
@@ -607,13 +567,10 @@ Figure error_timeline(const ErrorTimeline& timeline, const MethodOrder& order) {
     series.y = curve.horizontal_m;
     panel.series.push_back(std::move(series));
   }
-  Figure figure;
-  figure.name = "error_timeline_" + file_part(timeline.name);
-  figure.title = "Horizontal error over time";
-  figure.subtitle = timeline.name;
-  figure.caption =
-      "Horizontal position error on a logarithmic axis. It rises during outages and has to fall "
-      "back at once with the first fixes after.";
+  Figure figure{"error_timeline_" + file_part(timeline.name), "Horizontal error over time",
+                timeline.name,
+                "Horizontal position error on a logarithmic axis. It rises during outages and has "
+                "to fall back at once with the first fixes after."};
   figure.height_mm = 120;
   figure.panels = {panel};
   return figure;
@@ -622,10 +579,7 @@ Figure error_timeline(const ErrorTimeline& timeline, const MethodOrder& order) {
 namespace {
 
 Series path_series(const GroundPath& path, const std::string& label, Ink ink, double size) {
-  Series series;
-  series.label = label;
-  series.column = label + " north";
-  series.ink = ink;
+  Series series{label, label + " north", Mark::line, ink};
   series.size = size;
   series.x = path.east_m;
   series.y = path.north_m;
@@ -636,8 +590,8 @@ Series path_series(const GroundPath& path, const std::string& label, Ink ink, do
 
 Figure outage_map(const OutageMap& map, const MethodOrder& order) {
   Panel panel;
-  panel.x = axis("East of the start", "m");
-  panel.y = axis("North of the start", "m");
+  panel.x = {"East of the start", "m"};
+  panel.y = {"North of the start", "m"};
   panel.x.least_span = panel.y.least_span = 1;
   panel.equal_aspect = true;
   panel.scale_bar = true;
@@ -649,13 +603,10 @@ Figure outage_map(const OutageMap& map, const MethodOrder& order) {
     panel.series.back().dashed = look.dashed;
   }
   choose_map_unit(panel);
-  Figure figure;
-  figure.name = "outage_map_" + file_part(map.name);
-  figure.title = "Ground track with outages";
-  figure.subtitle = map.name;
-  figure.caption =
+  Figure figure{
+      "outage_map_" + file_part(map.name), "Ground track with outages", map.name,
       "The true path (grey, black where GNSS was withheld) and the estimates during outages. The "
-      "distance between black and coloured line at the end of an outage is its drift.";
+      "distance between black and coloured line at the end of an outage is its drift."};
   figure.height_mm = 190;
   figure.panels = {panel};
   return figure;
@@ -663,30 +614,22 @@ Figure outage_map(const OutageMap& map, const MethodOrder& order) {
 
 Figure parameter_map(const ParameterMap& map) {
   Panel panel;
-  panel.x = axis(map.x_label, "", AxisKind::category);
-  panel.y = axis(map.y_label, "", AxisKind::category);
+  panel.x = {map.x_label, "", AxisKind::category};
+  panel.y = {map.y_label, "", AxisKind::category};
   for (const double x : map.x) panel.x.categories.push_back(fmt::format("{:g}", x));
   for (const double y : map.y) panel.y.categories.push_back(fmt::format("{:g}", y));
-  panel.colour = axis(map.value_label, map.value_unit);
+  panel.colour = {map.value_label, map.value_unit};
   panel.heat_map = HeatMap{map.x.size(), map.y.size(), map.values};
   if (map.chosen) {
-    Series chosen;
-    chosen.label = "chosen";
-    chosen.mark = Mark::points;
+    Series chosen = points("chosen", Ink::vermillion, 1.2, {static_cast<double>(map.chosen->first)},
+                           {static_cast<double>(map.chosen->second)});
     chosen.shape = Shape::frame;
-    chosen.ink = Ink::vermillion;
-    chosen.x = {static_cast<double>(map.chosen->first)};
-    chosen.y = {static_cast<double>(map.chosen->second)};
     panel.series.push_back(chosen);
   }
-  Figure figure;
-  figure.name = map.name;
-  figure.title = map.title;
-  figure.subtitle = map.subtitle;
-  figure.caption =
-      "The objective over two parameters, the others at their best; the frame marks the chosen "
-      "point. A broad valley means that the result does not hang on the exact value; an optimum on "
-      "the edge asks for a wider grid.";
+  Figure figure{map.name, map.title, map.subtitle,
+                "The objective over two parameters, the others at their best; the frame marks the "
+                "chosen point. A broad valley means that the result does not hang on the exact "
+                "value; an optimum on the edge asks for a wider grid."};
   figure.height_mm = 60 + 14 * static_cast<double>(map.y.size());
   figure.width_mm = std::min(250.0, 75 + 26 * static_cast<double>(map.x.size()));
   figure.panels = {panel};

@@ -10,8 +10,7 @@ using namespace page;
 namespace {
 
 Section overview(const EvaluationReport& report) {
-  Section section;
-  section.title = "Overview";
+  Section section{"Overview"};
   section.paragraphs = report.remarks;
   section.tables = report.tables;
   if (!report.rms.empty()) section.figures.push_back(drift_bars(report.rms, report.methods));
@@ -19,16 +18,14 @@ Section overview(const EvaluationReport& report) {
 }
 
 Section case_section(const DriftCase& drift_case, const MethodOrder& order) {
-  Section section;
-  section.title = drift_case.name;
+  Section section{drift_case.name};
   section.figures = {drift_curves(drift_case, order), maximum_drifts(drift_case, order),
                      drift_distribution(drift_case, order), drift_growth(drift_case, order)};
   return section;
 }
 
 Section consistency(const EvaluationReport& report) {
-  Section section;
-  section.title = "Consistency in outages";
+  Section section{"Consistency in outages"};
   section.paragraphs = {
       "Innovations tell whether the noise of the IMU fits over the interval of the fixes. Over an "
       "outage the same noise has to explain errors a thousand times as large: the squares of the "
@@ -45,8 +42,7 @@ Section consistency(const EvaluationReport& report) {
 }
 
 Section distance(const EvaluationReport& report) {
-  Section section;
-  section.title = "Distance from the start";
+  Section section{"Distance from the start"};
   section.paragraphs = {
       "The distance is the straight line from the first fix of the recording to the first one "
       "withheld. The vertical turns by 0.157 mrad per kilometre: a method that takes gravity as "
@@ -60,8 +56,7 @@ Section distance(const EvaluationReport& report) {
 }
 
 Section recordings(const EvaluationReport& report) {
-  Section section;
-  section.title = "Recordings";
+  Section section{"Recordings"};
   for (const OutageMap& map : report.maps) {
     section.figures.push_back(outage_map(map, report.methods));
   }

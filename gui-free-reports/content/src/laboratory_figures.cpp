@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "foucault/content/laboratory_report.h"
-#include "foucault/plot/ticks.h"
+#include "series.h"
 
 namespace foucault::content {
 
@@ -13,8 +13,6 @@ using namespace plot;
 using namespace page;
 
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 struct QuantityText {
   const char* name;  ///< in file names
@@ -40,33 +38,21 @@ const std::vector<double>& values_of(const LabCurve& curve, LabQuantity quantity
 }
 
 /// At exactly this x; NaN if there is none.
-double value_at(const LabCurve& curve, LabQuantity quantity, double x) {
+double value_exactly_at(const LabCurve& curve, LabQuantity quantity, double x) {
   const auto found = std::find(curve.x.begin(), curve.x.end(), x);
-  if (found == curve.x.end()) return kNaN;
+  if (found == curve.x.end()) return kNoValue;
   return values_of(curve, quantity).at(static_cast<std::size_t>(found - curve.x.begin()));
-}
-
-Axis log_axis(const std::string& label, const std::string& unit) {
-  Axis axis;
-  axis.label = label;
-  axis.unit = unit;
-  axis.kind = AxisKind::log;
-  return axis;
 }
 
 std::string seconds_text(double seconds) { return fmt::format("{:g} s", seconds); }
 
-Series line(const LabCurve& curve, LabQuantity quantity) {
-  Series series;
-  series.label = curve.title;
-  series.x = curve.x;
-  series.y = values_of(curve, quantity);
-  return series;
+Series curve_line(const LabCurve& curve, LabQuantity quantity) {
+  return line(curve.title, Ink::blue, curve.x, values_of(curve, quantity));
 }
 
 /// The methods in the colours that evaluations give them.
 Series model_line(const LabCurve& curve, LabQuantity quantity) {
-  Series series = line(curve, quantity);
+  Series series = curve_line(curve, quantity);
   series.dashed = curve.local;
   series.size = curve.local ? 1.6 : 1.8;
   if (curve.key == "rough") {
@@ -89,19 +75,15 @@ Series model_line(const LabCurve& curve, LabQuantity quantity) {
 /// Smallest and largest of several noises at each of their common places.
 Series noise_band(const std::vector<LabCurve>& noises, LabQuantity quantity,
                   const std::string& title) {
-  Series band;
-  band.label = title;
-  band.column = "noise band";
-  band.mark = Mark::band;
-  band.ink = Ink::gray;
+  Series band{title, "noise band", Mark::band, Ink::gray};
   band.opacity = 0.28;
   if (noises.empty()) return band;
   band.x = noises.front().x;
   for (const double x : band.x) {
     double low = std::numeric_limits<double>::infinity(), high = 0;
     for (const LabCurve& noise : noises) {
-      low = std::min(low, value_at(noise, quantity, x));
-      high = std::max(high, value_at(noise, quantity, x));
+      low = std::min(low, value_exactly_at(noise, quantity, x));
+      high = std::max(high, value_exactly_at(noise, quantity, x));
     }
     band.lower.push_back(low);
     band.upper.push_back(high);
@@ -110,7 +92,7 @@ Series noise_band(const std::vector<LabCurve>& noises, LabQuantity quantity,
 }
 
 Series noise_line(const LabCurve& noise, LabQuantity quantity, bool dashed) {
-  Series series = line(noise, quantity);
+  Series series = curve_line(noise, quantity);
   series.label = "noise of " + noise.title;
   series.ink = Ink::gray;
   series.size = 1.1;
@@ -135,8 +117,8 @@ Panel model_panel(const LabMotionCurves& motion, const LabSettings& settings,
   Panel panel;
   panel.title = motion.title;
   panel.note = motion.note;
-  panel.x = log_axis("Duration", "s");
-  panel.y = log_axis(text_of(quantity).label, text_of(quantity).unit);
+  panel.x = {"Duration", "s", AxisKind::log};
+  panel.y = {text_of(quantity).label, text_of(quantity).unit, AxisKind::log};
   panel.series.push_back(noise_band(motion.band_noise, quantity, settings.band_title));
   for (const LabCurve& noise : motion.small_noise) {
     const bool second = panel.series.size() > 1;
@@ -149,45 +131,31 @@ Panel model_panel(const LabMotionCurves& motion, const LabSettings& settings,
 
 /// One range for all panels, in whole powers of ten.
 void share_y_range(std::vector<Panel>& panels) {
-  double low = std::numeric_limits<double>::infinity(), high = 0;
-  const auto take = [&](double y) {
-    if (!(y > 0) || !std::isfinite(y)) return;
-    low = std::min(low, y);
-    high = std::max(high, y);
-  };
+  PositiveRange range;
   for (const Panel& panel : panels) {
     for (const Series& series : panel.series) {
-      for (const auto* column : {&series.y, &series.lower, &series.upper}) {
-        std::for_each(column->begin(), column->end(), take);
-      }
+      for (const auto* column : {&series.y, &series.lower, &series.upper}) range.take(*column);
     }
   }
-  if (!(high > 0)) return;
-  for (Panel& panel : panels) {
-    panel.y.min = std::pow(10, std::floor(std::log10(low)));
-    panel.y.max = std::pow(10, std::ceil(std::log10(high)));
-  }
+  for (Panel& panel : panels) range.fit(panel.y);
 }
 
 }  // namespace
 
 Figure model_errors(const std::vector<LabMotionCurves>& motions, const LabSettings& settings,
                     LabQuantity quantity) {
-  Figure figure;
-  figure.name = fmt::format("lab_models_{}", text_of(quantity).name);
-  figure.title = fmt::format("{} of preintegration", text_of(quantity).label);
-  figure.subtitle =
+  Figure figure{
+      fmt::format("lab_models_{}", text_of(quantity).name),
+      fmt::format("{} of preintegration", text_of(quantity).label),
       fmt::format("perfect IMU, {:g} Hz, exact initial state; RMS over intervals along a trip",
-                  settings.rate_hz);
-  figure.caption = fmt::format(
-      "{} at the end of an interval against its length, both axes logarithmic; above each panel "
-      "the speeds of the intervals and their distances from where the trip began. Solid: the "
-      "origin "
-      "of w is where the trip began, as in a run; dashed: where the interval begins. The dashed "
-      "black line is the discretization of the increments, the least that any model can reach with "
-      "them. Grey: 1 sigma by the noise of IMUs. A model whose line lies below an IMU's does not "
-      "harm it.",
-      text_of(quantity).label);
+                  settings.rate_hz),
+      fmt::format("{} at the end of an interval against its length, both axes logarithmic; above "
+                  "each panel the speeds of the intervals and their distances from where the trip "
+                  "began. Solid: the origin of w is where the trip began, as in a run; dashed: "
+                  "where the interval begins. The dashed black line is the discretization of the "
+                  "increments, the least that any model can reach with them. Grey: 1 sigma by the "
+                  "noise of IMUs. A model whose line lies below an IMU's does not harm it.",
+                  text_of(quantity).label)};
   figure.width_mm = motions.size() > 1 ? 260 : 170;
   figure.height_mm = 30 + 92 * std::ceil(static_cast<double>(motions.size()) / 2);
   figure.columns = motions.size() > 1 ? 2 : 1;
@@ -220,10 +188,10 @@ void add_upright_noise(const std::vector<LabCurve>& noises, LabQuantity quantity
                        double y, Panel& panel) {
   double largest = 0;
   for (const LabCurve& noise : noises) {
-    largest = std::max(largest, value_at(noise, quantity, duration_s));
+    largest = std::max(largest, value_exactly_at(noise, quantity, duration_s));
   }
   for (const LabCurve& noise : noises) {
-    const double sigma = value_at(noise, quantity, duration_s);
+    const double sigma = value_exactly_at(noise, quantity, duration_s);
     panel.lines.push_back({Direction::vertical, sigma, "", Ink::gray, true});
     panel.annotations.push_back(
         {sigma, y, noise.title, sigma == largest ? Side::right : Side::left, Ink::gray});
@@ -235,8 +203,8 @@ bool is_seen(const LabMotionCurves& motion, std::size_t term, const LabSettings&
              LabQuantity quantity) {
   return std::any_of(
       settings.dot_durations_s.begin(), settings.dot_durations_s.end(), [&](double duration_s) {
-        const double all = value_at(motion.ablations[0], quantity, duration_s);
-        const double without = value_at(motion.ablations[term], quantity, duration_s);
+        const double all = value_exactly_at(motion.ablations[0], quantity, duration_s);
+        const double without = value_exactly_at(motion.ablations[term], quantity, duration_s);
         return std::abs(without - all) > 1e-3 * all;
       });
 }
@@ -260,20 +228,11 @@ std::vector<LabMotionCurves> with_seen_terms(const std::vector<LabMotionCurves>&
 
 /// Whole powers of ten around all marks and lines, with room for a name on the right.
 void fit_x_range(Panel& panel) {
-  double low = std::numeric_limits<double>::infinity(), high = 0;
-  const auto take = [&](double x) {
-    if (!(x > 0) || !std::isfinite(x)) return;
-    low = std::min(low, x);
-    high = std::max(high, x);
-  };
-  for (const Series& series : panel.series) {
-    std::for_each(series.x.begin(), series.x.end(), take);
-  }
-  for (const ReferenceLine& line : panel.lines) take(line.at);
-  for (const Shade& shade : panel.shades) take(shade.end);
-  if (!(high > 0)) return;
-  panel.x.min = std::pow(10, std::floor(std::log10(low / 1.5)));
-  panel.x.max = std::pow(10, std::ceil(std::log10(high * 30)));
+  PositiveRange range;
+  for (const Series& series : panel.series) range.take(series.x);
+  for (const ReferenceLine& line : panel.lines) range.take(line.at);
+  for (const Shade& shade : panel.shades) range.take(shade.end);
+  range.fit(panel.x, 1.5, 30);
 }
 
 /// Terms from top to bottom: the first one highest.
@@ -281,7 +240,7 @@ Panel dots_panel(const std::vector<LabMotionCurves>& motions, const LabSettings&
                  LabQuantity quantity, double duration_s) {
   Panel panel;
   panel.title = "After " + seconds_text(duration_s);
-  panel.x = log_axis(text_of(quantity).label, text_of(quantity).unit);
+  panel.x = {text_of(quantity).label, text_of(quantity).unit, AxisKind::log};
   panel.y.kind = AxisKind::category;
   const std::vector<LabCurve>& terms = motions.front().ablations;
   for (auto term = terms.rbegin(); term != terms.rend(); ++term) {
@@ -299,7 +258,7 @@ Panel dots_panel(const std::vector<LabMotionCurves>& motions, const LabSettings&
     const double aside =
         0.15 * (0.5 * static_cast<double>(motions.size() - 1) - static_cast<double>(m));
     for (std::size_t i = 0; i < motions[m].ablations.size(); ++i) {
-      series.x.push_back(value_at(motions[m].ablations[i], quantity, duration_s));
+      series.x.push_back(value_exactly_at(motions[m].ablations[i], quantity, duration_s));
       series.y.push_back(static_cast<double>(terms.size() - 1 - i) + aside);
     }
     panel.series.push_back(std::move(series));
@@ -320,16 +279,13 @@ Panel dots_panel(const std::vector<LabMotionCurves>& motions, const LabSettings&
 
 Figure ablation_dots(const std::vector<LabMotionCurves>& motions, const LabSettings& settings,
                      LabQuantity quantity) {
-  Figure figure;
-  figure.name = fmt::format("lab_terms_{}", text_of(quantity).name);
-  figure.title = fmt::format("{} without one term", text_of(quantity).label);
-  figure.subtitle = fmt::format("full without the term named, {:g} Hz", settings.rate_hz);
-  figure.caption =
+  Figure figure{
+      fmt::format("lab_terms_{}", text_of(quantity).name),
+      fmt::format("{} without one term", text_of(quantity).label),
+      fmt::format("full without the term named, {:g} Hz", settings.rate_hz),
       "Error of an integration that has all that `full` has, and of the same without one term. A "
       "term whose marks lie where those of the first row do does not count there. A term matters "
-      "for an IMU "
-      "if its marks lie right of that "
-      "IMU's noise (grey).";
+      "for an IMU if its marks lie right of that IMU's noise (grey)."};
   const std::vector<LabMotionCurves> shown = with_seen_terms(motions, settings, quantity);
   figure.width_mm = 260;
   figure.height_mm = 42 + 11 * static_cast<double>(shown.front().ablations.size());
@@ -356,13 +312,13 @@ void add_level_noise(const LabMotionCurves& motion, const LabSettings& settings,
     panel.series.push_back(band);
   }
   for (const LabCurve& noise : motion.small_noise) {
-    panel.lines.push_back({Direction::horizontal, value_at(noise, quantity, duration_s),
+    panel.lines.push_back({Direction::horizontal, value_exactly_at(noise, quantity, duration_s),
                            noise.title, Ink::gray, true});
   }
 }
 
 Series motion_line(const LabCurve& curve, LabQuantity quantity, std::size_t motion) {
-  Series series = line(curve, quantity);
+  Series series = curve_line(curve, quantity);
   series.ink = look_of(motion).ink;
   series.size = 2;
   return series;
@@ -372,8 +328,8 @@ Panel rate_panel(const std::vector<LabMotionCurves>& motions, const LabSettings&
                  LabQuantity quantity) {
   constexpr std::size_t kWithMark = 0;  // of a motion's curves: the one with nothing left out
   Panel panel;
-  panel.x = log_axis("IMU rate", "Hz");
-  panel.y = log_axis(text_of(quantity).label, text_of(quantity).unit);
+  panel.x = {"IMU rate", "Hz", AxisKind::log};
+  panel.y = {text_of(quantity).label, text_of(quantity).unit, AxisKind::log};
   if (motions.front().rates.empty()) return panel;
   const std::vector<double>& rates = motions.front().rates.front().x;
   if (rates.empty()) return panel;
@@ -393,15 +349,13 @@ Panel rate_panel(const std::vector<LabMotionCurves>& motions, const LabSettings&
 }  // namespace
 
 Figure rate_lines(const std::vector<LabMotionCurves>& motions, const LabSettings& settings) {
-  Figure figure;
-  figure.name = "lab_rates";
-  figure.title = fmt::format("Error of full after {} by the rate of the IMU",
-                             seconds_text(settings.rates_duration_s));
-  figure.subtitle = "perfect IMU, exact initial state; RMS over intervals along a trip";
-  figure.caption =
-      "What is left of the error once every term is there is the motion within the samples: of "
-      "second order in position, of third to fourth in attitude. A vibration needs a rate some ten "
-      "times its own. Below a nanometre the truth itself ends.";
+  Figure figure{"lab_rates",
+                fmt::format("Error of full after {} by the rate of the IMU",
+                            seconds_text(settings.rates_duration_s)),
+                "perfect IMU, exact initial state; RMS over intervals along a trip",
+                "What is left of the error once every term is there is the motion within the "
+                "samples: of second order in position, of third to fourth in attitude. A vibration "
+                "needs a rate some ten times its own. Below a nanometre the truth itself ends."};
   figure.width_mm = 260;
   figure.height_mm = 130;
   figure.columns = 2;
@@ -412,14 +366,14 @@ Figure rate_lines(const std::vector<LabMotionCurves>& motions, const LabSettings
 
 namespace {
 
-Panel distance_panel(const std::vector<LabMotionCurves>& motions, const LabSettings& settings,
-                     std::size_t curve) {
+Panel origin_panel(const std::vector<LabMotionCurves>& motions, const LabSettings& settings,
+                   std::size_t curve) {
   constexpr LabQuantity kQuantity = LabQuantity::position;
   Panel panel;
   const double duration_s = settings.dot_durations_s[curve];
   panel.title = "After " + seconds_text(duration_s);
-  panel.x = log_axis("Distance from the origin of w", "km");
-  panel.y = log_axis(text_of(kQuantity).label, text_of(kQuantity).unit);
+  panel.x = {"Distance from the origin of w", "km", AxisKind::log};
+  panel.y = {text_of(kQuantity).label, text_of(kQuantity).unit, AxisKind::log};
   if (motions.front().distances.size() <= curve) return panel;
   const std::vector<double>& km = motions.front().distances[curve].x;
   if (km.empty()) return panel;
@@ -437,20 +391,18 @@ Panel distance_panel(const std::vector<LabMotionCurves>& motions, const LabSetti
 }  // namespace
 
 Figure distance_lines(const std::vector<LabMotionCurves>& motions, const LabSettings& settings) {
-  Figure figure;
-  figure.name = "lab_distance";
-  figure.title = "Error of refined by the distance from the origin";
-  figure.subtitle = fmt::format("{:g} Hz, exact initial state; the origin lies behind the vehicle",
-                                settings.rate_hz);
-  figure.caption =
+  Figure figure{
+      "lab_distance", "Error of refined by the distance from the origin",
+      fmt::format("{:g} Hz, exact initial state; the origin lies behind the vehicle",
+                  settings.rate_hz),
       "`refined` takes gravity as that of the origin of w, whose direction is off by 0.157 mrad a "
       "km: g d T^2 / 2R. An estimator takes most of it for a tilt and lives with the change along "
-      "the way, the level on the left, which grows with speed. `full` and `ekf` know the place.";
+      "the way, the level on the left, which grows with speed. `full` and `ekf` know the place."};
   figure.width_mm = 260;
   figure.height_mm = 125;
   figure.columns = static_cast<int>(settings.dot_durations_s.size());
   for (std::size_t i = 0; i < settings.dot_durations_s.size(); ++i) {
-    figure.panels.push_back(distance_panel(motions, settings, i));
+    figure.panels.push_back(origin_panel(motions, settings, i));
   }
   return figure;
 }

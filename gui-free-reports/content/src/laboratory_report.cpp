@@ -10,8 +10,7 @@ using namespace page;
 namespace {
 
 Section models_section(const LaboratoryReport& report) {
-  Section section;
-  section.title = "Models";
+  Section section{"Models"};
   section.paragraphs = report.remarks;
   section.tables = report.tables;
   for (const LabQuantity quantity :
@@ -22,8 +21,7 @@ Section models_section(const LaboratoryReport& report) {
 }
 
 Section terms_section(const LaboratoryReport& report) {
-  Section section;
-  section.title = "Terms";
+  Section section{"Terms"};
   section.tables = report.term_tables;
   for (const LabQuantity quantity : {LabQuantity::position, LabQuantity::attitude}) {
     section.figures.push_back(ablation_dots(report.motions, report.settings, quantity));

@@ -9,10 +9,11 @@ using namespace plot;
 
 namespace {
 
-constexpr double kFar = 20e3;  // [m]
+constexpr double kFarFromStart = 20e3;  // [m]
 
 bool reaches_far(const std::vector<double>& values) {
-  return std::any_of(values.begin(), values.end(), [](double v) { return std::abs(v) > kFar; });
+  return std::any_of(values.begin(), values.end(),
+                     [](double v) { return std::abs(v) > kFarFromStart; });
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "foucault/plot/axis_scale.h"
-#include "foucault/plot/ticks.h"
+#include "foucault/plot/text.h"
 #include "map_unit.h"
 #include "run_panels.h"
 
@@ -24,12 +24,7 @@ constexpr std::array<Ink, 3> kAxisInks{Ink::blue, Ink::vermillion, Ink::green};
 /// centre +- 3 sigma.
 Series bounds(const std::vector<double>& x, const std::vector<double>& centre,
               const std::vector<double>& sigma, const std::string& column) {
-  Series series;
-  series.label = "±3σ";
-  series.column = column;
-  series.mark = Mark::band;
-  series.ink = Ink::sky;
-  series.opacity = 0.35;
+  Series series = pale_band("±3σ", column);
   series.range_role = RangeRole::typical;
   series.x = x;
   for (size_t i = 0; i < x.size(); ++i) {
@@ -78,7 +73,7 @@ void add_estimate_panels(const RunData& data, const Triad& triad, const Quantity
   const DecimatedTable::Rows rows = triad.rows.rows();
   for (size_t i = 0; i < 3; ++i) {
     const std::string column = column_name(quantity.axes[i], quantity.noun);
-    Panel panel = time_panel(data, value_axis(quantity.axes[i], quantity.unit));
+    Panel panel = time_panel(data, {quantity.axes[i], quantity.unit});
     panel.y.least_span = least_span;
     panel.series.push_back(
         bounds(rows.x, rows.columns[i], rows.columns[i + 3], column + " 3 sigma"));
@@ -104,7 +99,7 @@ void add_notes(const Triad& triad, Figure& figure) {
   for (size_t i = 0; i < 3; ++i) {
     Panel& panel = figure.panels[i];
     const auto axis = static_cast<Eigen::Index>(i);
-    const std::string unit = panel.y.shown_unit.empty() ? panel.y.unit : panel.y.shown_unit;
+    const std::string unit = shown_unit(panel.y);
     panel.note = statistics_note(rms[axis], inside[axis], unit, panel.y.shown_factor) +
                  since(triad.statistics_from);
   }
@@ -117,7 +112,7 @@ void add_error_panels(const RunData& data, const Triad& triad, const Quantity& q
   const std::vector<double> zero(rows.x.size(), 0);
   for (size_t i = 0; i < 3; ++i) {
     const std::string column = column_name(quantity.axes[i], quantity.noun);
-    Panel panel = time_panel(data, value_axis(quantity.axes[i], quantity.unit));
+    Panel panel = time_panel(data, {quantity.axes[i], quantity.unit});
     panel.y.zero_centred = true;
     panel.series.push_back(bounds(rows.x, zero, rows.columns[i + 3], column + " 3 sigma"));
     panel.series.push_back(line("error", Ink::blue, rows.x, rows.columns[i]));
@@ -186,10 +181,7 @@ std::vector<Category> quality_categories() {
 
 /// Rows of a gap are left out: points are not joined.
 Series fix_points(const DecimatedTable::Rows& rows) {
-  Series series;
-  series.label = "fix";
-  series.column = "fix north";
-  series.mark = Mark::points;
+  Series series{"fix", "fix north", Mark::points};
   series.size = 1.9;
   series.categories = quality_categories();
   series.x = rows.columns[1];
@@ -248,8 +240,8 @@ double track_height(const Panel& panel) {
 std::optional<Figure> ground_track(const RunData& data, const std::string& subtitle) {
   if (data.track.empty() && data.fix_places.empty()) return std::nullopt;
   Panel panel;
-  panel.x = value_axis("East of the start", "m");
-  panel.y = value_axis("North of the start", "m");
+  panel.x = {"East of the start", "m"};
+  panel.y = {"North of the start", "m"};
   panel.x.least_span = panel.y.least_span = 1;
   panel.equal_aspect = true;
   panel.scale_bar = true;
@@ -272,13 +264,10 @@ std::optional<Figure> ground_track(const RunData& data, const std::string& subti
   mark_ends(estimate, panel);
   choose_map_unit(panel);
 
-  Figure figure;
-  figure.name = "ground_track";
-  figure.title = "Ground track";
-  figure.subtitle = subtitle;
-  figure.caption =
-      "The estimated path of the IMU (wide line) and the GNSS fixes of the antenna, coloured by "
-      "type. In a good run the line passes through the fixes and is smooth where they are missing.";
+  Figure figure{"ground_track", "Ground track", subtitle,
+                "The estimated path of the IMU (wide line) and the GNSS fixes of the antenna, "
+                "coloured by type. In a good run the line passes through the fixes and is smooth "
+                "where they are missing."};
   figure.height_mm = track_height(panel);
   figure.panels.push_back(std::move(panel));
   return figure;
@@ -286,11 +275,10 @@ std::optional<Figure> ground_track(const RunData& data, const std::string& subti
 
 std::optional<Figure> position_figure(const RunData& data, const std::string& subtitle) {
   if (data.position.empty()) return std::nullopt;
-  Figure figure = stacked_figure("position", "Position relative to the start", subtitle);
-  figure.caption =
+  Figure figure = stacked_figure(
+      "position", "Position relative to the start", subtitle,
       "North, east and height of the IMU with 3-sigma bounds (see the uncertainty figure where "
-      "they "
-      "are too narrow to be seen). Jumps at fixes after a gap are drift being corrected.";
+      "they are too narrow to be seen). Jumps at fixes after a gap are drift being corrected.");
   add_estimate_panels(data, data.position, {"position", "m", {"North", "East", "Height"}}, 0.1,
                       figure);
   return figure;
@@ -298,21 +286,19 @@ std::optional<Figure> position_figure(const RunData& data, const std::string& su
 
 std::optional<Figure> velocity_figure(const RunData& data, const std::string& subtitle) {
   if (data.velocity.empty()) return std::nullopt;
-  Figure figure = stacked_figure("velocity", "Velocity", subtitle);
-  figure.caption =
-      "Velocity in the local north-east-down with 3-sigma bounds. It should be smooth, and zero "
-      "when the vehicle stands.";
+  Figure figure = stacked_figure("velocity", "Velocity", subtitle,
+                                 "Velocity in the local north-east-down with 3-sigma bounds. It "
+                                 "should be smooth, and zero when the vehicle stands.");
   add_estimate_panels(data, data.velocity, {"velocity", "m/s", kNed}, 0.1, figure);
   return figure;
 }
 
 std::optional<Figure> attitude_figure(const RunData& data, const std::string& subtitle) {
   if (data.attitude.empty()) return std::nullopt;
-  Figure figure = stacked_figure("attitude", "Attitude of the vehicle", subtitle);
-  figure.caption =
-      "Roll, pitch and heading of the vehicle with 3-sigma bounds; the heading is drawn without "
-      "jumps at 360°. Heading is learnt while the vehicle accelerates and turns, so its bounds "
-      "narrow then.";
+  Figure figure = stacked_figure("attitude", "Attitude of the vehicle", subtitle,
+                                 "Roll, pitch and heading of the vehicle with 3-sigma bounds; the "
+                                 "heading is drawn without jumps at 360°. Heading is learnt while "
+                                 "the vehicle accelerates and turns, so its bounds narrow then.");
   add_estimate_panels(data, data.attitude, {"angle", "°", kEuler}, 0.5, figure);
   return figure;
 }
@@ -322,7 +308,7 @@ namespace {
 Panel sigma_panel(const RunData& data, const Triad& triad, const std::string& label,
                   const std::string& unit, const Names& axes) {
   const DecimatedTable::Rows rows = triad.rows.rows();
-  Panel panel = time_panel(data, value_axis(label, unit));
+  Panel panel = time_panel(data, {label, unit});
   panel.y.kind = AxisKind::log;
   panel.legend = LegendPlace::panel;
   for (size_t i = 0; i < 3; ++i) {
@@ -336,11 +322,11 @@ Panel sigma_panel(const RunData& data, const Triad& triad, const std::string& la
 
 std::optional<Figure> uncertainty_figure(const RunData& data, const std::string& subtitle) {
   if (data.position.empty()) return std::nullopt;
-  Figure figure = stacked_figure("uncertainty", "Estimated uncertainty (1σ)", subtitle);
-  figure.height_mm = 200;
-  figure.caption =
+  Figure figure = stacked_figure(
+      "uncertainty", "Estimated uncertainty (1σ)", subtitle,
       "Standard deviations the estimator gives itself, on logarithmic axes. They grow without GNSS "
-      "and fall with the first fixes after.";
+      "and fall with the first fixes after.");
+  figure.height_mm = 200;
   figure.panels = {
       sigma_panel(data, data.position, "Position", "m", kNed),
       sigma_panel(data, data.velocity, "Velocity", "m/s", kNed),
@@ -354,49 +340,46 @@ std::optional<Figure> uncertainty_figure(const RunData& data, const std::string&
 
 std::optional<Figure> position_error_figure(const RunData& data, const std::string& subtitle) {
   if (data.position_error.empty()) return std::nullopt;
-  Figure figure =
-      stacked_figure("position_error", "Position error against the reference", subtitle);
-  figure.caption =
+  Figure figure = stacked_figure(
+      "position_error", "Position error against the reference", subtitle,
       "Estimate minus reference. If the estimator knows its own accuracy, 99.7 % of the errors lie "
-      "within the bounds; bounds that are never touched are too wide.";
+      "within the bounds; bounds that are never touched are too wide.");
   return error_figure(data, data.position_error, {"error", "m", kNed}, std::move(figure));
 }
 
 std::optional<Figure> velocity_error_figure(const RunData& data, const std::string& subtitle) {
   if (data.velocity_error.empty()) return std::nullopt;
   Figure figure =
-      stacked_figure("velocity_error", "Velocity error against the reference", subtitle);
-  figure.caption = "Estimate minus reference, local north-east-down, with 3-sigma bounds.";
+      stacked_figure("velocity_error", "Velocity error against the reference", subtitle,
+                     "Estimate minus reference, local north-east-down, with 3-sigma bounds.");
   return error_figure(data, data.velocity_error, {"error", "m/s", kNed}, std::move(figure));
 }
 
 std::optional<Figure> attitude_error_figure(const RunData& data, const std::string& subtitle) {
   if (data.attitude_error.empty()) return std::nullopt;
-  Figure figure =
-      stacked_figure("attitude_error", "Attitude error against the reference", subtitle);
-  figure.caption =
-      "Estimate minus reference, vehicle axes, with 3-sigma bounds. Roll and pitch settle within "
-      "seconds, the heading as the vehicle manoeuvres; a constant offset points at a mounting "
-      "angle.";
+  Figure figure = stacked_figure("attitude_error", "Attitude error against the reference", subtitle,
+                                 "Estimate minus reference, vehicle axes, with 3-sigma bounds. "
+                                 "Roll and pitch settle within seconds, the heading as the vehicle "
+                                 "manoeuvres; a constant offset points at a mounting angle.");
   return error_figure(data, data.attitude_error, {"error", "°", kEuler}, std::move(figure));
 }
 
 std::optional<Figure> gyro_bias_figure(const RunData& data, const std::string& subtitle) {
   if (data.gyro_bias.empty()) return std::nullopt;
-  Figure figure = stacked_figure("gyro_bias", "Gyroscope bias", subtitle);
-  figure.caption =
+  Figure figure = stacked_figure(
+      "gyro_bias", "Gyroscope bias", subtitle,
       "Bias on the axes of the IMU with 3-sigma bounds. After the first manoeuvres it should move "
-      "slowly, within the bounds it had before. Bounds wider than the axes are cut.";
+      "slowly, within the bounds it had before. Bounds wider than the axes are cut.");
   add_estimate_panels(data, data.gyro_bias, {"bias", "°/h", kXyz}, 1, figure);
   return figure;
 }
 
 std::optional<Figure> accel_bias_figure(const RunData& data, const std::string& subtitle) {
   if (data.accel_bias.empty()) return std::nullopt;
-  Figure figure = stacked_figure("accel_bias", "Accelerometer bias", subtitle);
-  figure.caption =
-      "Bias on the axes of the IMU with 3-sigma bounds (1 mGal = 10⁻⁵ m/s²). The horizontal axes "
-      "are told from tilt only while the vehicle turns.";
+  Figure figure =
+      stacked_figure("accel_bias", "Accelerometer bias", subtitle,
+                     "Bias on the axes of the IMU with 3-sigma bounds (1 mGal = 10⁻⁵ m/s²). The "
+                     "horizontal axes are told from tilt only while the vehicle turns.");
   add_estimate_panels(data, data.accel_bias, {"bias", "mGal", kXyz}, 10, figure);
   return figure;
 }
@@ -414,7 +397,7 @@ Series innovation_bounds(const DecimatedTable::Rows& used, size_t axis, const st
 Panel innovation_panel(const RunData& data, const DecimatedTable::Rows& used,
                        const DecimatedTable::Rows& rejected, size_t axis) {
   const std::string column = column_name(kNed[axis], "innovation");
-  Panel panel = time_panel(data, value_axis(kNed[axis], "m"));
+  Panel panel = time_panel(data, {kNed[axis], "m"});
   panel.y.zero_centred = true;
   panel.series.push_back(innovation_bounds(used, axis, column));
   panel.series.push_back(points("used", Ink::blue, 2.4, used.x, used.columns[axis]));
@@ -433,11 +416,11 @@ Panel innovation_panel(const RunData& data, const DecimatedTable::Rows& used,
 
 std::optional<Figure> innovation_figure(const RunData& data, const std::string& subtitle) {
   if (data.innovation.empty() && data.rejected_innovation.empty()) return std::nullopt;
-  Figure figure = stacked_figure("gnss_innovations", "GNSS innovations", subtitle);
-  figure.caption =
+  Figure figure = stacked_figure(
+      "gnss_innovations", "GNSS innovations", subtitle,
       "Fix minus its prediction, before it is used, with the 3-sigma bounds of the prediction and "
       "the fix together. Good innovations are centred, have no pattern in time and stay within the "
-      "bounds. Crosses are rejected fixes; arrowheads stand for what lies outside of the axes.";
+      "bounds. Crosses are rejected fixes; arrowheads stand for what lies outside of the axes.");
   const DecimatedTable::Rows used = data.innovation.rows.rows();
   const DecimatedTable::Rows rejected = data.rejected_innovation.rows.rows();
   for (size_t axis = 0; axis < 3; ++axis) {
@@ -450,14 +433,14 @@ std::optional<Figure> innovation_figure(const RunData& data, const std::string& 
 
 std::optional<Figure> postfit_figure(const RunData& data, const std::string& subtitle) {
   if (data.postfit.empty()) return std::nullopt;
-  Figure figure = stacked_figure("gnss_residuals", "GNSS residuals after use", subtitle);
-  figure.caption =
+  Figure figure = stacked_figure(
+      "gnss_residuals", "GNSS residuals after use", subtitle,
       "Fix minus the estimate that has used it. They are smaller than the innovations; steps or "
-      "slopes mean that fixes and IMU disagree (lever arm, time offset, a biased fix).";
+      "slopes mean that fixes and IMU disagree (lever arm, time offset, a biased fix).");
   const DecimatedTable::Rows rows = data.postfit.rows.rows();
   const Eigen::Vector3d rms = data.postfit.statistics.rms();
   for (size_t i = 0; i < 3; ++i) {
-    Panel panel = time_panel(data, value_axis(kNed[i], "m"));
+    Panel panel = time_panel(data, {kNed[i], "m"});
     panel.y.zero_centred = true;
     panel.series.push_back(points("residual", Ink::blue, 2.4, rows.x, rows.columns[i]));
     panel.series.back().range_role = RangeRole::most;
@@ -470,7 +453,7 @@ std::optional<Figure> postfit_figure(const RunData& data, const std::string& sub
     figure.panels[i].note =
         fmt::format("RMS {} {}",
                     significant_text(rms[static_cast<Eigen::Index>(i)] * y.shown_factor),
-                    y.shown_unit.empty() ? y.unit : y.shown_unit) +
+                    shown_unit(y)) +
         since(data.postfit.statistics_from);
   }
   return figure;
@@ -479,7 +462,7 @@ std::optional<Figure> postfit_figure(const RunData& data, const std::string& sub
 namespace {
 
 Panel step_panel(const RunData& data, const StepWatch& watch, const std::string& label, Ink ink) {
-  Panel panel = time_panel(data, value_axis(label, "s"));
+  Panel panel = time_panel(data, {label, "s"});
   const DecimatedTable::Rows rows = watch.steps().rows();
   panel.series.push_back(line(label, ink, rows.x, rows.columns[0]));
   panel.series.back().mark = Mark::steps;
@@ -535,10 +518,10 @@ Panel type_panel(const RunData& data) {
 }  // namespace
 
 std::optional<Figure> data_health_figure(const RunData& data, const std::string& subtitle) {
-  Figure figure = stacked_figure("data_health", "Data health", subtitle);
-  figure.caption =
+  Figure figure = stacked_figure(
+      "data_health", "Data health", subtitle,
       "Time between IMU samples, time between GNSS fixes that were used, and fix types over time. "
-      "Healthy intervals lie on one level; every gap stands out above it.";
+      "Healthy intervals lie on one level; every gap stands out above it.");
   if (data.imu_steps.stamps() > 1) {
     figure.panels.push_back(step_panel(data, data.imu_steps, "IMU interval", Ink::blue));
   }

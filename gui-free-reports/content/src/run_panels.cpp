@@ -3,9 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <utility>
 
-#include "foucault/plot/ticks.h"
+#include "foucault/plot/text.h"
 
 namespace foucault::content {
 
@@ -21,21 +20,6 @@ bool overlaps(const Interval& a, const std::vector<Interval>& others) {
 }
 
 }  // namespace
-
-Axis time_axis() {
-  Axis axis;
-  axis.label = "Time since start";
-  axis.unit = "s";
-  axis.kind = AxisKind::duration;
-  return axis;
-}
-
-Axis value_axis(const std::string& label, const std::string& unit) {
-  Axis axis;
-  axis.label = label;
-  axis.unit = unit;
-  return axis;
-}
 
 std::vector<Shade> time_shades(const RunData& data) {
   std::vector<Shade> shades;
@@ -61,29 +45,9 @@ Panel time_panel(const RunData& data, const Axis& y) {
   return panel;
 }
 
-Series line(const std::string& label, Ink ink, std::vector<double> x, std::vector<double> y) {
-  Series series;
-  series.label = label;
-  series.ink = ink;
-  series.x = std::move(x);
-  series.y = std::move(y);
-  return series;
-}
-
-Series points(const std::string& label, Ink ink, double size, std::vector<double> x,
-              std::vector<double> y) {
-  Series series = line(label, ink, std::move(x), std::move(y));
-  series.mark = Mark::points;
-  series.size = size;
-  return series;
-}
-
 Figure stacked_figure(const std::string& name, const std::string& title,
-                      const std::string& subtitle) {
-  Figure figure;
-  figure.name = name;
-  figure.title = title;
-  figure.subtitle = subtitle;
+                      const std::string& subtitle, const std::string& caption) {
+  Figure figure{name, title, subtitle, caption};
   figure.height_mm = kStackedHeight;
   figure.share_x = true;
   return figure;

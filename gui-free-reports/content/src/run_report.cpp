@@ -6,7 +6,7 @@
 
 #include "consistency_section.h"
 #include "foucault/core/time.h"
-#include "foucault/plot/ticks.h"
+#include "foucault/plot/text.h"
 #include "run_data.h"
 #include "run_figures.h"
 #include "timeline_section.h"
@@ -26,15 +26,6 @@ std::string utc_text(int64_t t_ns) {
   gmtime_r(&seconds, &utc);
   return fmt::format("{:04}-{:02}-{:02} {:02}:{:02}:{:02} UTC", utc.tm_year + 1900, utc.tm_mon + 1,
                      utc.tm_mday, utc.tm_hour, utc.tm_min, utc.tm_sec);
-}
-
-std::string joined_by_dots(const std::vector<std::string>& parts) {
-  std::string text;
-  for (const std::string& part : parts) {
-    if (part.empty()) continue;
-    text += (text.empty() ? "" : " · ") + part;
-  }
-  return text;
 }
 
 Table fix_table(const RunData& data) {
@@ -93,8 +84,9 @@ class RunReport::Collector {
       : labels(std::move(run_labels)), data(mounting, labels.statistics_from_s) {}
 
   std::string subtitle() const {
-    return joined_by_dots({labels.recording, labels.method,
-                           data.start_ns() ? utc_text(*data.start_ns()) : std::string()});
+    return joined({labels.recording, labels.method,
+                   data.start_ns() ? utc_text(*data.start_ns()) : std::string()},
+                  " · ");
   }
 
   Section overview() const {
@@ -104,7 +96,7 @@ class RunReport::Collector {
   }
 
   Section errors() const {
-    Section section{"Errors", {}, {}, {}};
+    Section section{"Errors"};
     add_if(position_error_figure(data, subtitle()), section);
     add_if(velocity_error_figure(data, subtitle()), section);
     add_if(attitude_error_figure(data, subtitle()), section);
@@ -112,7 +104,7 @@ class RunReport::Collector {
   }
 
   Section gnss() const {
-    Section section{"GNSS", {}, {}, {}};
+    Section section{"GNSS"};
     if (!data.verdicts.empty()) section.tables.push_back(fix_table(data));
     add_if(innovation_figure(data, subtitle()), section);
     add_if(postfit_figure(data, subtitle()), section);
@@ -120,7 +112,7 @@ class RunReport::Collector {
   }
 
   Section solution() const {
-    Section section{"Solution", {}, {}, {}};
+    Section section{"Solution"};
     add_if(position_figure(data, subtitle()), section);
     add_if(velocity_figure(data, subtitle()), section);
     add_if(attitude_figure(data, subtitle()), section);
@@ -129,14 +121,14 @@ class RunReport::Collector {
   }
 
   Section biases() const {
-    Section section{"Sensor biases", {}, {}, {}};
+    Section section{"Sensor biases"};
     add_if(gyro_bias_figure(data, subtitle()), section);
     add_if(accel_bias_figure(data, subtitle()), section);
     return section;
   }
 
   Section health() const {
-    Section section{"Data health", {}, {}, {}};
+    Section section{"Data health"};
     const Table sampling = sampling_table(data);
     if (!sampling.rows.empty()) section.tables.push_back(sampling);
     add_if(data_health_figure(data, subtitle()), section);

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "foucault/core/time.h"
-#include "foucault/plot/ticks.h"
+#include "foucault/plot/text.h"
 #include "run_panels.h"
 
 namespace foucault::content {
@@ -88,12 +88,6 @@ const char* short_name(FixVerdict verdict) {
   return "";
 }
 
-std::string joined(const std::vector<std::string>& parts, const char* by) {
-  std::string text;
-  for (const std::string& part : parts) text += (text.empty() ? "" : by) + part;
-  return text;
-}
-
 size_t rejected_fixes(const RunData& data) {
   return fixes(data) - count_of(data, FixVerdict::used) - count_of(data, FixVerdict::corrected);
 }
@@ -158,8 +152,7 @@ std::string summary(const RunData& data) {
   const std::vector<std::string> parts = happenings(data);
   if (!parts.empty()) return joined(parts, "; ") + ".";
   return fmt::format(
-      "Nothing happened: all {} were used, none was missing, and the IMU has no "
-      "hole.",
+      "Nothing happened: all {} were used, none was missing, and the IMU has no hole.",
       plural(fixes(data), "fix", "fixes"));
 }
 
@@ -220,27 +213,16 @@ std::vector<Interval> imu_stretches(const StepWatch& imu) {
 }
 
 constexpr double kReach = 0.34;  // of a bar, above and below the middle of its lane
-constexpr double kGap = std::numeric_limits<double>::quiet_NaN();
-
-void add_bar(const Interval& interval, double level, Series& bars) {
-  bars.x.insert(bars.x.end(), {interval.begin, interval.end, interval.end});
-  bars.lower.insert(bars.lower.end(), {level - kReach, level - kReach, kGap});
-  bars.upper.insert(bars.upper.end(), {level + kReach, level + kReach, kGap});
-}
-
 void add_stroke(double t, double level, Series& strokes) {
   strokes.x.insert(strokes.x.end(), {t, t, t});
-  strokes.y.insert(strokes.y.end(), {level - kReach, level + kReach, kGap});
+  strokes.y.insert(strokes.y.end(), {level - kReach, level + kReach, kNoValue});
 }
 
 /// Bars, and strokes where they would be too short to be seen.
 void add_lane(const Lane& lane, double least_length, Panel& panel) {
   const double level = static_cast<double>(panel.y.categories.size());
   panel.y.categories.push_back(lane.label);
-  Series bars;
-  bars.mark = Mark::band;
-  bars.column = lane.column;
-  bars.ink = lane.ink;
+  Series bars{{}, lane.column, Mark::band, lane.ink};
   Series strokes = line("", lane.ink, {}, {});
   strokes.column = lane.column + " moment";
   strokes.size = 1.5;
@@ -248,7 +230,7 @@ void add_lane(const Lane& lane, double least_length, Panel& panel) {
     if (interval.length() < least_length) {
       add_stroke((interval.begin + interval.end) / 2, level, strokes);
     } else {
-      add_bar(interval, level, bars);
+      add_level(interval.begin, interval.end, level - kReach, level + kReach, bars);
     }
   }
   for (Series* series : {&bars, &strokes}) {
@@ -318,15 +300,12 @@ std::optional<Figure> timeline_figure(const RunData& data, const std::string& su
   if (data.imu_steps.stamps() > 1) {
     add_lane({"IMU", "IMU", Ink::gray, imu_stretches(data.imu_steps)}, least_length, panel);
   }
-  Figure figure;
-  figure.name = "timeline";
-  figure.title = "Timeline";
-  figure.subtitle = subtitle;
-  figure.caption =
+  Figure figure{
+      "timeline", "Timeline", subtitle,
       "What there was and what became of it: IMU samples, fixes that were used and, if any, those "
       "that were left out, by reason; below, what was noticed (see the table). A healthy recording "
       "shows bars without gaps and nothing in vermillion. Of more than a thousand stretches of a "
-      "lane those next to each other are drawn as one.";
+      "lane those next to each other are drawn as one."};
   figure.height_mm = 36 + kLaneHeight * static_cast<double>(panel.y.categories.size());
   figure.panels = {std::move(panel)};
   return figure;
@@ -353,8 +332,7 @@ std::string verdict_name(FixVerdict verdict) {
 }
 
 Section timeline_section(const RunData& data, const std::string& subtitle) {
-  Section section;
-  section.title = "Timeline";
+  Section section{"Timeline"};
   if (std::optional<Figure> figure = timeline_figure(data, subtitle)) {
     section.paragraphs.push_back(summary(data));
     section.figures.push_back(std::move(*figure));

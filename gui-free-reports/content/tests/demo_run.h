@@ -3,6 +3,8 @@
 #include <cmath>
 #include <cstdint>
 #include <random>
+#include <stdexcept>
+#include <string>
 
 #include "foucault/content/run_report.h"
 #include "foucault/core/so3.h"
@@ -177,6 +179,45 @@ inline void fill_demo(const DemoRun& run, RunReport& report) {
   report.key_number({"Vertical RMS error", "1.4", "cm", ""});
   report.key_number({"Innovation RMS, horizontal", "1.9", "cm", "2160 fixes"});
   report.key_number({"Processing time", "4.3", "s", "140 times real time"});
+}
+
+inline const RunLabels kLabels{"trip.rawlog", "refined", "foucault 0.1.0",
+                               "foucault run trip.rawlog --out trip",
+                               "imu:\n  preset: ADIS16465\n"};
+
+inline page::ReportPage demo_page(const DemoRun& run) {
+  RunReport report(kLabels, Mounting{});
+  fill_demo(run, report);
+  return report.page();
+}
+
+inline const plot::Figure* find_figure(const page::ReportPage& page, const std::string& name) {
+  for (const page::Section& section : page.sections) {
+    for (const plot::Figure& figure : section.figures) {
+      if (figure.name == name) return &figure;
+    }
+  }
+  return nullptr;
+}
+
+inline const plot::Figure& figure_of(const page::ReportPage& page, const std::string& name) {
+  const plot::Figure* const figure = find_figure(page, name);
+  if (figure == nullptr) throw std::runtime_error("no figure " + name);
+  return *figure;
+}
+
+inline const plot::Series& series_of(const plot::Panel& panel, const std::string& label) {
+  for (const plot::Series& series : panel.series) {
+    if (series.label == label) return series;
+  }
+  throw std::runtime_error("no series " + label);
+}
+
+inline const page::Section& section_of(const page::ReportPage& page, const std::string& title) {
+  for (const page::Section& section : page.sections) {
+    if (section.title == title) return section;
+  }
+  throw std::runtime_error("no section " + title);
 }
 
 }  // namespace foucault::content

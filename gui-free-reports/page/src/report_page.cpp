@@ -6,18 +6,38 @@
 #include <atomic>
 #include <filesystem>
 #include <future>
-#include <nlohmann/json.hpp>
 #include <set>
 #include <thread>
 
 #include "foucault/core/error.h"
 #include "foucault/plot/figure_store.h"
 #include "foucault/plot/files.h"
+#include "foucault/plot/json_fields.h"
 #include "report_html.h"
 
 namespace foucault::page {
 
 using namespace plot;
+
+static auto fields_of(const Table*) {
+  return std::tuple(std::pair("title", &Table::title), std::pair("note", &Table::note),
+                    std::pair("of_words", &Table::of_words), std::pair("header", &Table::header),
+                    std::pair("rows", &Table::rows));
+}
+
+static auto fields_of(const Banner*) {
+  return std::tuple(std::pair("alarming", &Banner::alarming), std::pair("title", &Banner::title),
+                    std::pair("lines", &Banner::lines));
+}
+
+static auto fields_of(const KeyNumber*) {
+  return std::tuple(std::pair("label", &KeyNumber::label), std::pair("value", &KeyNumber::value),
+                    std::pair("unit", &KeyNumber::unit), std::pair("note", &KeyNumber::note));
+}
+
+static auto fields_of(const Listing*) {
+  return std::tuple(std::pair("title", &Listing::title), std::pair("text", &Listing::text));
+}
 
 namespace {
 
@@ -28,91 +48,43 @@ constexpr const char* kPageFile = "report.json";
 
 // ---- the page as JSON; figures by name
 
-Json table_to_json(const Table& t) {
-  return {{"title", t.title},
-          {"note", t.note},
-          {"of_words", t.of_words},
-          {"header", t.header},
-          {"rows", t.rows}};
-}
-
-Table table_from_json(const Json& j) {
-  Table t;
-  t.title = j.at("title").get<std::string>();
-  t.note = j.at("note").get<std::string>();
-  t.of_words = j.at("of_words").get<bool>();
-  t.header = j.at("header").get<std::vector<std::string>>();
-  t.rows = j.at("rows").get<std::vector<std::vector<std::string>>>();
-  return t;
-}
-
 Json section_to_json(const Section& s) {
-  Json json{{"title", s.title},
-            {"paragraphs", s.paragraphs},
-            {"tables", Json::array()},
-            {"figures", Json::array()},
-            {"details", Json::array()}};
-  for (const Table& table : s.details) json["details"].push_back(table_to_json(table));
-  for (const Table& table : s.tables) json["tables"].push_back(table_to_json(table));
-  for (const Figure& figure : s.figures) json["figures"].push_back(figure.name);
-  return json;
+  Json names = Json::array();
+  for (const Figure& figure : s.figures) names.push_back(figure.name);
+  return {{"title", s.title},
+          {"paragraphs", s.paragraphs},
+          {"tables", s.tables},
+          {"figures", names},
+          {"details", s.details}};
 }
 
 Section section_from_json(const Json& j, const std::string& folder) {
-  Section s;
-  s.title = j.at("title").get<std::string>();
-  s.paragraphs = j.at("paragraphs").get<std::vector<std::string>>();
-  for (const Json& table : j.at("tables")) s.tables.push_back(table_from_json(table));
-  for (const Json& name : j.at("figures")) {
-    s.figures.push_back(load_figure(folder, name.get<std::string>()));
-  }
-  for (const Json& table : j.value("details", Json::array())) {
-    s.details.push_back(table_from_json(table));
-  }
+  Section s{j.at("title"), j.at("paragraphs"), j.at("tables")};
+  for (const Json& name : j.at("figures")) s.figures.push_back(load_figure(folder, name));
+  s.details = j.value("details", std::vector<Table>());
   return s;
-}
-
-Json banner_to_json(const Banner& b) {
-  return {{"alarming", b.alarming}, {"title", b.title}, {"lines", b.lines}};
-}
-
-Banner banner_from_json(const Json& j) {
-  return {j.at("alarming").get<bool>(), j.at("title").get<std::string>(),
-          j.at("lines").get<std::vector<std::string>>()};
 }
 
 Json page_to_json(const ReportPage& page) {
   Json json{{"title", page.title},       {"subtitle", page.subtitle},
-            {"footer", page.footer},     {"key_numbers", Json::array()},
-            {"sections", Json::array()}, {"listings", Json::array()}};
-  if (page.banner) json["banner"] = banner_to_json(*page.banner);
-  for (const KeyNumber& n : page.key_numbers) {
-    json["key_numbers"].push_back(
-        {{"label", n.label}, {"value", n.value}, {"unit", n.unit}, {"note", n.note}});
-  }
+            {"footer", page.footer},     {"key_numbers", page.key_numbers},
+            {"sections", Json::array()}, {"listings", page.listings}};
   for (const Section& section : page.sections) json["sections"].push_back(section_to_json(section));
-  for (const Listing& l : page.listings) {
-    json["listings"].push_back({{"title", l.title}, {"text", l.text}});
-  }
+  if (page.banner) json["banner"] = *page.banner;
   return json;
 }
 
 ReportPage page_from_json(const Json& j, const std::string& folder) {
   ReportPage page;
-  page.title = j.at("title").get<std::string>();
-  page.subtitle = j.at("subtitle").get<std::string>();
-  page.footer = j.at("footer").get<std::string>();
-  if (j.contains("banner")) page.banner = banner_from_json(j.at("banner"));
-  for (const Json& n : j.at("key_numbers")) {
-    page.key_numbers.push_back({n.at("label").get<std::string>(), n.at("value").get<std::string>(),
-                                n.at("unit").get<std::string>(), n.at("note").get<std::string>()});
-  }
+  j.at("title").get_to(page.title);
+  j.at("subtitle").get_to(page.subtitle);
+  j.at("footer").get_to(page.footer);
+  if (j.contains("banner")) page.banner = j.at("banner").get<Banner>();
+  j.at("key_numbers").get_to(page.key_numbers);
   for (const Json& section : j.at("sections")) {
     page.sections.push_back(section_from_json(section, folder));
   }
-  for (const Json& l : j.at("listings")) {
-    page.listings.push_back({l.at("title").get<std::string>(), l.at("text").get<std::string>()});
-  }
+  j.at("listings").get_to(page.listings);
   return page;
 }
 

@@ -23,11 +23,10 @@ Span padded(Span span, double share, bool log) {
 
 /// The quantiles `share` and 1 - share of the finite numbers; NaN if there are none.
 Span middle_of(std::vector<double> values, double share) {
-  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   values.erase(
       std::remove_if(values.begin(), values.end(), [](double v) { return !std::isfinite(v); }),
       values.end());
-  if (values.empty()) return {kNaN, kNaN};
+  if (values.empty()) return {kNoValue, kNoValue};
   const auto skip = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size()));
   const auto lower = values.begin() + skip;
   std::nth_element(values.begin(), lower, values.end());
@@ -169,8 +168,11 @@ Ticks AxisScale::ticks(int count) const {
       return result;
     }
   }
-  return linear_ticks(span_.min, span_.max, count, axis_->shown_factor,
-                      axis_->shown_unit.empty() ? axis_->unit : axis_->shown_unit);
+  return linear_ticks(span_.min, span_.max, count, axis_->shown_factor, shown_unit(*axis_));
+}
+
+const std::string& shown_unit(const Axis& axis) {
+  return axis.shown_unit.empty() ? axis.unit : axis.shown_unit;
 }
 
 std::string axis_title(const Axis& axis, const Ticks& ticks) {

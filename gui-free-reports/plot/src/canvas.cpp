@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <opencv2/core.hpp>
+#include <opencv2/freetype.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "foucault/core/error.h"
@@ -244,7 +246,7 @@ cv::Ptr<cv::freetype::FreeType2> load_font(const std::string& path) {
   return font;
 }
 
-cv::Mat widened(const cv::Mat& coverage, int radius) {
+cv::Mat dilated(const cv::Mat& coverage, int radius) {
   cv::Mat wide;
   const cv::Mat disc =
       cv::getStructuringElement(cv::MORPH_ELLIPSE, {2 * radius + 1, 2 * radius + 1});
@@ -353,7 +355,7 @@ void Canvas::text(const std::string& text, cv::Point2d at, const TextStyle& styl
     cv::rotate(ink.coverage, ink.coverage, cv::ROTATE_90_COUNTERCLOCKWISE);
   }
   const cv::Point top_left(int(std::lround(at.x - anchor.x)), int(std::lround(at.y - anchor.y)));
-  if (style.halo) blend(widened(ink.coverage, 4), top_left, {255, 255, 255}, 0.9);
+  if (style.halo) blend(dilated(ink.coverage, 4), top_left, {255, 255, 255}, 0.9);
   blend(ink.coverage, top_left, style.colour, 1);
 }
 

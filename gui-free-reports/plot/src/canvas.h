@@ -1,13 +1,16 @@
 #pragma once
 
-#include <opencv2/core.hpp>
-#include <opencv2/freetype.hpp>
+#include <opencv2/core/mat.hpp>
 #include <string>
 #include <vector>
 
 #include "foucault/plot/figure.h"
 #include "foucault/plot/palette.h"
 #include "foucault/plot/renderer.h"
+
+namespace cv::freetype {
+class FreeType2;
+}
 
 namespace foucault::plot {
 
@@ -28,10 +31,10 @@ enum class AlignY { baseline, middle, top };
 
 struct TextStyle {
   double points = 9;
-  bool bold = false;
-  Rgb colour;
+  Rgb colour = {};
   AlignX x = AlignX::left;
   AlignY y = AlignY::baseline;
+  bool bold = false;
   bool upwards = false;  ///< turned by 90 degrees, reading upwards; x, y refer to the turned text
   bool halo = false;     ///< a white seam that keeps it legible over data
 };

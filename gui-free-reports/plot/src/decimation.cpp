@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <set>
 #include <stdexcept>
 
 namespace foucault::plot {
@@ -39,20 +38,26 @@ void DecimatedTable::start_bucket() {
   }
 }
 
-void DecimatedTable::thin(Bucket& bucket) const {
-  if (bucket.kept.size() <= 2 * columns_) return;
+/// The rows that hold the smallest or the largest finite value of a column.
+std::set<size_t> DecimatedTable::extremes_of(const std::vector<Row>& rows) const {
   std::set<size_t> extremes;
   for (size_t c = 0; c < columns_; ++c) {
-    size_t lowest = bucket.kept.size();
-    size_t highest = bucket.kept.size();
-    for (size_t i = 0; i < bucket.kept.size(); ++i) {
-      const double value = bucket.kept[i].values[c];
+    size_t lowest = rows.size();
+    size_t highest = rows.size();
+    for (size_t i = 0; i < rows.size(); ++i) {
+      const double value = rows[i].values[c];
       if (!std::isfinite(value)) continue;
-      if (lowest == bucket.kept.size() || value < bucket.kept[lowest].values[c]) lowest = i;
-      if (highest == bucket.kept.size() || value > bucket.kept[highest].values[c]) highest = i;
+      if (lowest == rows.size() || value < rows[lowest].values[c]) lowest = i;
+      if (highest == rows.size() || value > rows[highest].values[c]) highest = i;
     }
-    if (lowest < bucket.kept.size()) extremes.insert({lowest, highest});
+    if (lowest < rows.size()) extremes.insert({lowest, highest});
   }
+  return extremes;
+}
+
+void DecimatedTable::thin(Bucket& bucket) const {
+  if (bucket.kept.size() <= 2 * columns_) return;
+  std::set<size_t> extremes = extremes_of(bucket.kept);
   if (extremes.empty()) extremes.insert(0);
 
   std::vector<Row> survivors;

@@ -1,8 +1,6 @@
 #pragma once
 
-#include <nlohmann/json.hpp>
-#include <string>
-#include <vector>
+#include <nlohmann/json_fwd.hpp>
 
 #include "foucault/plot/figure.h"
 

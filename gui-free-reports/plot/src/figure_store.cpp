@@ -8,12 +8,14 @@
 #include <filesystem>
 #include <limits>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <set>
 #include <string_view>
 
 #include "figure_json.h"
 #include "foucault/core/error.h"
 #include "foucault/plot/files.h"
+#include "foucault/plot/text.h"
 
 namespace foucault::plot {
 namespace {
@@ -22,46 +24,41 @@ using Json = nlohmann::ordered_json;
 
 // ---- names
 
-/// Lower-case letters, digits and underscores; what units need is spelled out.
-std::string slug(std::string text) {
-  const std::vector<std::pair<std::string, std::string>> spelled{
+/// Units and signs in letters.
+std::string spelled(std::string text) {
+  constexpr std::pair<std::string_view, std::string_view> kSpelled[] = {
       {"°", "deg"}, {"²", "2"}, {"√", "sqrt"}, {"σ", "sigma"}, {"µ", "u"}, {"%", "percent"}};
-  for (const auto& [from, to] : spelled) {
+  for (const auto& [from, to] : kSpelled) {
     for (size_t at = text.find(from); at != std::string::npos; at = text.find(from)) {
       text.replace(at, from.size(), to);
     }
   }
+  return text;
+}
+
+/// Lower-case letters, digits and single underscores between them.
+std::string slug(const std::string& text) {
   std::string result;
-  for (const char c : text) {
-    const bool plain = (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9');
+  for (const char c : spelled(text)) {
     const bool capital = c >= 'A' && c <= 'Z';
-    if (plain || capital) {
+    if (capital || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9')) {
       result += capital ? static_cast<char>(c - 'A' + 'a') : c;
     } else if (!result.empty() && result.back() != '_') {
       result += '_';
     }
   }
-  while (!result.empty() && result.back() == '_') result.pop_back();
-  return result;
-}
-
-std::string joined(const std::vector<std::string>& parts) {
-  std::string result;
-  for (const std::string& part : parts) {
-    if (part.empty()) continue;
-    result += result.empty() ? part : "_" + part;
-  }
+  if (!result.empty() && result.back() == '_') result.pop_back();
   return result;
 }
 
 std::string x_name(const Panel& panel) {
-  const std::string name = joined({slug(panel.x.label), slug(panel.x.unit)});
+  const std::string name = joined({slug(panel.x.label), slug(panel.x.unit)}, "_");
   return name.empty() ? "x" : name;
 }
 
 std::string series_name(const Panel& panel, const Series& series) {
   if (!series.column.empty()) return slug(series.column);
-  const std::string name = joined({slug(panel.y.label), slug(series.label)});
+  const std::string name = joined({slug(panel.y.label), slug(series.label)}, "_");
   return name.empty() ? "y" : name;
 }
 
@@ -177,12 +174,12 @@ class SeriesWriter {
     json_["rows"] = series.x.size();
     json_["columns"] = Json::object();
     add("x", x_name(panel), series.x, names_of(panel.x));
-    add("y", joined({name, unit}), series.y, names_of(panel.y));
-    add("lower", joined({name, "lower", unit}), series.lower, {});
-    add("upper", joined({name, "upper", unit}), series.upper, {});
-    add("category", joined({name, "kind"}), series.category, names_of(series.categories));
-    add("value", joined({name, slug(panel.colour.label), slug(panel.colour.unit)}), series.value,
-        {});
+    add("y", joined({name, unit}, "_"), series.y, names_of(panel.y));
+    add("lower", joined({name, "lower", unit}, "_"), series.lower, {});
+    add("upper", joined({name, "upper", unit}, "_"), series.upper, {});
+    add("category", joined({name, "kind"}, "_"), series.category, names_of(series.categories));
+    add("value", joined({name, slug(panel.colour.label), slug(panel.colour.unit)}, "_"),
+        series.value, {});
   }
 
  private:
@@ -210,8 +207,8 @@ void write_heat_map(const Panel& panel, CsvWriter& csv, Json& json) {
     up.push_back(category_name(panel.y, i / map.columns));
   }
   csv.add(x_name(panel), across);
-  csv.add(joined({slug(panel.y.label), slug(panel.y.unit)}), up);
-  const std::string value = joined({slug(panel.colour.label), slug(panel.colour.unit)});
+  csv.add(joined({slug(panel.y.label), slug(panel.y.unit)}, "_"), up);
+  const std::string value = joined({slug(panel.colour.label), slug(panel.colour.unit)}, "_");
   json["column"] = csv.add(value.empty() ? "value" : value, numbers(map.values));
 }
 

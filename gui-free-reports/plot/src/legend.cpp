@@ -127,11 +127,8 @@ void Legend::draw(Canvas& canvas, cv::Point2d top_left) const {
     const double x = top_left.x + placed.x;
     const double middle = top_left.y + (placed.row + 0.5) * kRow;
     draw_sample(canvas, placed.entry, x, middle);
-    TextStyle style;
-    style.points = kPoints;
-    style.colour = rgb(Ink::black);
-    style.y = AlignY::middle;
-    canvas.text(placed.entry.label, {x + sample_width(placed.entry) + kGap, middle}, style);
+    canvas.text(placed.entry.label, {x + sample_width(placed.entry) + kGap, middle},
+                {kPoints, rgb(Ink::black), AlignX::left, AlignY::middle});
   }
 }
 

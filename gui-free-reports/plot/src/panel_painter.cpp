@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 
+#include "foucault/plot/text.h"
 #include "style.h"
 
 namespace foucault::plot {
@@ -13,15 +14,6 @@ namespace {
 using style::millimetres;
 
 constexpr int kColourSteps = 32;
-
-TextStyle text_style(double points, Rgb colour, AlignX x, AlignY y) {
-  TextStyle style;
-  style.points = points;
-  style.colour = colour;
-  style.x = x;
-  style.y = y;
-  return style;
-}
 
 cv::Rect grown(const cv::Rect& area, double by) {
   const int margin = int(std::ceil(by));
@@ -121,7 +113,7 @@ class PanelPainter {
     if (right - left < millimetres(13) || bottom - top < millimetres(6)) return;
     const Rgb ink = known && is_dark(colour) ? Rgb{255, 255, 255} : style::kText;
     canvas_.text(significant_text(value), {(left + right) / 2.0, (top + bottom) / 2.0},
-                 text_style(style::kTickPoints, ink, AlignX::centre, AlignY::middle));
+                 {style::kTickPoints, ink, AlignX::centre, AlignY::middle});
   }
 
   // ---- series
@@ -315,7 +307,7 @@ class PanelPainter {
       const double top =
           series.upper.empty() ? series.y[i] : std::fmax(series.y[i], series.upper[i]);
       canvas_.text(significant_text(series.y[i], 3), {x(centres[i]), y(top) - millimetres(1.4)},
-                   text_style(8, style::kSoftText, AlignX::centre, AlignY::baseline));
+                   {8, style::kSoftText, AlignX::centre, AlignY::baseline});
     }
   }
 
@@ -351,7 +343,7 @@ class PanelPainter {
 
   void reference_label(const ReferenceLine& line) {
     if (line.label.empty() || !is_shown(line)) return;
-    TextStyle style = text_style(style::kNotePoints, rgb(line.ink), AlignX::left, AlignY::baseline);
+    TextStyle style{style::kNotePoints, rgb(line.ink), AlignX::left, AlignY::baseline};
     style.halo = true;
     const double width = canvas_.typesetter().width(line.label, style::kNotePoints);
     if (line.direction == Direction::horizontal) {
@@ -405,12 +397,12 @@ class PanelPainter {
       }
       if (!placed_.has_x_labels) continue;
       canvas_.text(tick.label, {at, plot_.br().y + length + millimetres(1.2)},
-                   text_style(style::kTickPoints, style::kSoftText, AlignX::centre, AlignY::top));
+                   {style::kTickPoints, style::kSoftText, AlignX::centre, AlignY::top});
     }
     if (!placed_.has_x_labels) return;
     canvas_.text(axis_title(panel_.x, placed_.x_ticks),
                  {plot_.x + plot_.width / 2.0, plot_.br().y + length + millimetres(6.4)},
-                 text_style(style::kAxisPoints, style::kText, AlignX::centre, AlignY::top));
+                 {style::kAxisPoints, style::kText, AlignX::centre, AlignY::top});
   }
 
   void y_axis() {
@@ -420,9 +412,9 @@ class PanelPainter {
       const int reach = is_category ? 0 : tick.label.empty() ? length / 2 : length;
       horizontal_rule(y(tick.at), plot_.x - reach, reach, style::kSpineWidth, style::kSpine);
       canvas_.text(tick.label, {plot_.x - length - millimetres(0.9), y(tick.at)},
-                   text_style(style::kTickPoints, style::kSoftText, AlignX::right, AlignY::middle));
+                   {style::kTickPoints, style::kSoftText, AlignX::right, AlignY::middle});
     }
-    TextStyle style = text_style(style::kAxisPoints, style::kText, AlignX::centre, AlignY::top);
+    TextStyle style{style::kAxisPoints, style::kText, AlignX::centre, AlignY::top};
     style.upwards = true;
     canvas_.text(axis_title(panel_.y, placed_.y_ticks),
                  {placed_.left_of_labels, plot_.y + plot_.height / 2.0}, style);
@@ -437,8 +429,7 @@ class PanelPainter {
     const double width = canvas_.typesetter().width(annotation.text, style::kNotePoints);
     if (side == Side::right && px + away + width > plot_.br().x) side = Side::left;
     if (side == Side::left && px - away - width < plot_.x) side = Side::right;
-    TextStyle style =
-        text_style(style::kNotePoints, rgb(annotation.ink), AlignX::centre, AlignY::middle);
+    TextStyle style{style::kNotePoints, rgb(annotation.ink), AlignX::centre, AlignY::middle};
     style.halo = true;
     cv::Point2d at(px, py);
     switch (side) {
@@ -515,7 +506,7 @@ class PanelPainter {
     const std::string text = significant_text(kilometres ? length / 1000 : length, 1) + " " +
                              (kilometres ? "km" : panel_.x.unit);
     canvas_.text(text, {area.x + pixels / 2, level - millimetres(2)},
-                 text_style(style::kNotePoints, style::kText, AlignX::centre, AlignY::baseline));
+                 {style::kNotePoints, style::kText, AlignX::centre, AlignY::baseline});
   }
 
   void colour_bar() {
@@ -530,10 +521,9 @@ class PanelPainter {
       const double at = placed_.colour->pixel(tick.at);
       horizontal_rule(at, left + width, int(style::kTickLength), style::kSpineWidth, style::kSpine);
       canvas_.text(tick.label, {left + width + style::kTickLength + millimetres(0.9), at},
-                   text_style(style::kTickPoints, style::kSoftText, AlignX::left, AlignY::middle));
+                   {style::kTickPoints, style::kSoftText, AlignX::left, AlignY::middle});
     }
-    TextStyle style =
-        text_style(style::kAxisPoints, style::kText, AlignX::centre, AlignY::baseline);
+    TextStyle style{style::kAxisPoints, style::kText, AlignX::centre, AlignY::baseline};
     style.upwards = true;
     canvas_.text(axis_title(panel_.colour, ticks),
                  {left + width + millimetres(15.5), plot_.y + plot_.height / 2.0}, style);
@@ -546,11 +536,11 @@ class PanelPainter {
       placed_.legend->draw(canvas_, {double(plot_.x), top});
       level = top - millimetres(1);
     }
-    TextStyle title = text_style(style::kAxisPoints, style::kText, AlignX::left, AlignY::baseline);
+    TextStyle title{style::kAxisPoints, style::kText, AlignX::left, AlignY::baseline};
     title.bold = true;
     canvas_.text(panel_.title, {double(plot_.x), level}, title);
     canvas_.text(panel_.note, {double(plot_.br().x), level},
-                 text_style(style::kNotePoints, style::kSoftText, AlignX::right, AlignY::baseline));
+                 {style::kNotePoints, style::kSoftText, AlignX::right, AlignY::baseline});
   }
 
   const PlacedPanel& placed_;

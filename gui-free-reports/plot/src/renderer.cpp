@@ -51,16 +51,12 @@ void check(const Figure& figure) {
 
 void paint_titles(const Figure& figure, Canvas& canvas) {
   double baseline = style::kOuter + millimetres(3.6);
-  TextStyle title;
-  title.points = style::kTitlePoints;
+  TextStyle title{style::kTitlePoints, style::kText};
   title.bold = true;
-  title.colour = style::kText;
   canvas.text(figure.title, {style::kOuter, baseline}, title);
   if (!figure.title.empty()) baseline += millimetres(5.2);
-  TextStyle subtitle;
-  subtitle.points = style::kSubtitlePoints;
-  subtitle.colour = style::kSoftText;
-  canvas.text(figure.subtitle, {style::kOuter, baseline}, subtitle);
+  canvas.text(figure.subtitle, {style::kOuter, baseline},
+              {style::kSubtitlePoints, style::kSoftText});
 }
 
 }  // namespace

@@ -1,12 +1,10 @@
 #include "foucault/plot/ticks.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "foucault/core/round_step.h"
+#include "foucault/plot/text.h"
 
 namespace foucault::plot {
 namespace {
@@ -18,26 +16,10 @@ int decimals_of(double step) {
   return std::max(0, static_cast<int>(-std::floor(std::log10(step) + 1e-9)));
 }
 
-std::string superscript(int number) {
-  constexpr std::array<const char*, 10> kDigits{"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
-  std::string text;
-  for (const char c : std::to_string(number)) {
-    text += c == '-' ? "⁻" : kDigits[static_cast<size_t>(c - '0')];
-  }
-  return text;
-}
-
 /// The power of ten to take out of numbers as large as `largest`: 0 if they read well as they are.
 int common_exponent(double largest) {
   if (largest <= 0 || (largest >= 1e-3 && largest < 1e6)) return 0;
   return 3 * static_cast<int>(std::floor(std::log10(largest) / 3));
-}
-
-std::string with_thin_spaces(std::string digits) {
-  const size_t point = std::min(digits.find('.'), digits.size());
-  if (point < 5) return digits;
-  for (size_t i = point; i > 3; i -= 3) digits.insert(i - 3, "\u2009");
-  return digits;
 }
 
 Ticks stepped(double min, double max, double step, int decimals, double factor) {
@@ -60,7 +42,7 @@ double clock_step(double least, const std::vector<double>& steps) {
 std::string power_text(int exponent) {
   if (exponent >= 0 && exponent <= 4) return number_text(std::pow(10, exponent), 0);
   if (exponent < 0 && exponent >= -3) return number_text(std::pow(10, exponent), -exponent);
-  return "10" + superscript(exponent);
+  return power_of_ten(exponent);
 }
 
 /// Mantissas to label: of few decades more than the powers of ten.
@@ -78,24 +60,6 @@ std::string log_label(int mantissa, int exponent) {
 
 }  // namespace
 
-std::string number_text(double value, int decimals) {
-  if (!std::isfinite(value)) return "–";
-  const std::string digits = fmt::format("{:.{}f}", std::abs(value), decimals);
-  const bool is_zero = digits.find_first_not_of("0.") == std::string::npos;
-  return (value < 0 && !is_zero ? "−" : "") + with_thin_spaces(digits);
-}
-
-std::string significant_text(double value, int significant) {
-  if (!std::isfinite(value)) return "–";
-  if (value == 0) return "0";
-  const int magnitude = static_cast<int>(std::floor(std::log10(std::abs(value)) + 1e-9));
-  if (magnitude < -5 || magnitude > 8) {
-    return number_text(value / std::pow(10, magnitude), significant - 1) + "×10" +
-           superscript(magnitude);
-  }
-  return number_text(value, std::max(0, significant - 1 - magnitude));
-}
-
 Ticks linear_ticks(double min, double max, int count, double factor, const std::string& unit) {
   const double largest = std::max(std::abs(min), std::abs(max)) * factor;
   const int exponent = common_exponent(largest);
@@ -103,7 +67,7 @@ Ticks linear_ticks(double min, double max, int count, double factor, const std::
   const double step = round_step((max - min) * scaled / std::max(1, count));
   Ticks result = stepped(min, max, step, decimals_of(step), scaled);
   result.unit = unit;
-  if (exponent != 0) result.exponent = "×10" + superscript(exponent);
+  if (exponent != 0) result.exponent = "×" + power_of_ten(exponent);
   return result;
 }
 

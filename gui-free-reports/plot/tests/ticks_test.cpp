@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
 namespace foucault::plot {
 namespace {
@@ -73,22 +72,6 @@ TEST(DurationTicks, ChooseAUnitThatSuitsAClock) {
   const Ticks day = duration_ticks(0, 86400, 8);
   EXPECT_EQ(day.unit, "h");
   EXPECT_THAT(labels(day), ElementsAre("0", "3", "6", "9", "12", "15", "18", "21", "24"));
-}
-
-TEST(NumberText, UsesATrueMinusAndNoNegativeZero) {
-  EXPECT_EQ(number_text(-1.25, 1), "−1.2");
-  EXPECT_EQ(number_text(-0.01, 1), "0.0");
-  EXPECT_EQ(number_text(1234, 0), "1234");
-  EXPECT_EQ(number_text(12345.5, 1), "12\u2009345.5");
-  EXPECT_EQ(number_text(std::numeric_limits<double>::quiet_NaN(), 1), "–");
-}
-
-TEST(SignificantText, KeepsThreeDigits) {
-  EXPECT_EQ(significant_text(0.012345), "0.0123");
-  EXPECT_EQ(significant_text(-3.14159), "−3.14");
-  EXPECT_EQ(significant_text(99.96), "100.0");
-  EXPECT_EQ(significant_text(0), "0");
-  EXPECT_EQ(significant_text(4.2e-9), "4.20×10⁻⁹");
 }
 
 }  // namespace

@@ -37,9 +37,9 @@ struct Table {
 /// A heading with what stands under it, in this order: paragraphs, tables, figures, details.
 struct Section {
   std::string title;
-  std::vector<std::string> paragraphs;
-  std::vector<Table> tables;
-  std::vector<plot::Figure> figures;
+  std::vector<std::string> paragraphs = {};
+  std::vector<Table> tables = {};
+  std::vector<plot::Figure> figures = {};
   std::vector<Table> details = {};  ///< tables to look things up in
 };
 

@@ -38,6 +38,9 @@ class AxisScale {
   double at_max_;
 };
 
+/// The unit that readers see.
+const std::string& shown_unit(const Axis& axis);
+
 /// "label (unit)".
 std::string axis_title(const Axis& axis, const Ticks& ticks);
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <set>
 #include <vector>
 
 namespace foucault::plot {
@@ -45,6 +46,7 @@ class DecimatedTable {
   };
 
   void start_bucket();
+  std::set<size_t> extremes_of(const std::vector<Row>& rows) const;
   void thin(Bucket& bucket) const;
   void merge_neighbours();
 

@@ -11,6 +11,9 @@
 /// Numbers are stored in the unit of their axis. A y that is not finite is a gap: lines stop there.
 namespace foucault::plot {
 
+/// Where there is no value.
+constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
+
 enum class Mark { line, points, steps, bars, band };
 /// `frame` surrounds a cell of a heat map and has no size of its own.
 enum class Shape { dot, ring, cross, plus, triangle, square, diamond, star, tick, frame };
@@ -28,8 +31,8 @@ struct Category {
 
 /// A curve, a cloud of points, a set of bars or a band. All columns in use are equally long.
 struct Series {
-  std::string label;   ///< in the legend and the CSV header; empty: not in the legend
-  std::string column;  ///< name of the CSV column; empty: made from the label
+  std::string label = {};   ///< in the legend and the CSV header; empty: not in the legend
+  std::string column = {};  ///< name of the CSV column; empty: made from the label
   Mark mark = Mark::line;
   Ink ink = Ink::blue;
   Shape shape = Shape::dot;
@@ -39,30 +42,31 @@ struct Series {
   bool in_legend = true;
   bool value_labels = false;  ///< the number above each bar
   RangeRole range_role = RangeRole::full;
-  std::vector<double> x;
-  std::vector<double> y;         ///< not used by a band
-  std::vector<double> lower;     ///< a band's lower edge; lower end of a bar's or point's interval
-  std::vector<double> upper;     ///< as lower
-  std::vector<double> category;  ///< index in `categories` of each point, or empty
-  std::vector<Category> categories;
-  std::vector<double> value;  ///< drawn through the colormap, or empty
+  std::vector<double> x = {};
+  std::vector<double> y = {};  ///< not used by a band
+  std::vector<double> lower =
+      {};  ///< a band's lower edge; lower end of a bar's or point's interval
+  std::vector<double> upper = {};     ///< as lower
+  std::vector<double> category = {};  ///< index in `categories` of each point, or empty
+  std::vector<Category> categories = {};
+  std::vector<double> value = {};  ///< drawn through the colormap, or empty
 };
 
 /// Linear; logarithmic; seconds shown as s, min or h; or named places 0, 1, 2, ...
 enum class AxisKind { linear, log, duration, category };
 
 struct Axis {
-  std::string label;
-  std::string unit;  ///< of the numbers; empty: none
+  std::string label = {};
+  std::string unit = {};  ///< of the numbers; empty: none
   AxisKind kind = AxisKind::linear;
-  std::string shown_unit;     ///< the unit of the tick labels if it is another one,
-  double shown_factor = 1;    ///< and that unit's numbers divided by the stored ones
-  bool zero_centred = false;  ///< the automatic range is symmetric about zero
-  bool from_zero = false;     ///< the automatic range begins at zero
-  std::optional<double> min;  ///< fixes an end of the range
-  std::optional<double> max;
+  std::string shown_unit = {};     ///< the unit of the tick labels if it is another one,
+  double shown_factor = 1;         ///< and that unit's numbers divided by the stored ones
+  bool zero_centred = false;       ///< the automatic range is symmetric about zero
+  bool from_zero = false;          ///< the automatic range begins at zero
+  std::optional<double> min = {};  ///< fixes an end of the range
+  std::optional<double> max = {};
   double least_span = 0;  ///< the automatic range is at least this wide
-  std::vector<std::string> categories;
+  std::vector<std::string> categories = {};
 };
 
 /// A stretch of the x axis, e.g. an outage.
@@ -122,15 +126,15 @@ struct Panel {
 };
 
 struct Figure {
-  std::string name;      ///< of the files; letters, digits, '-' and '_'
-  std::string title;     ///< what is shown
-  std::string subtitle;  ///< of what: recording, method
-  std::string caption;   ///< what one sees and what good looks like; printed by the report
+  std::string name = {};      ///< of the files; letters, digits, '-' and '_'
+  std::string title = {};     ///< what is shown
+  std::string subtitle = {};  ///< of what: recording, method
+  std::string caption = {};   ///< what one sees and what good looks like; printed by the report
   double width_mm = 250;
   double height_mm = 150;
   int columns = 1;       ///< panels fill row by row
   bool share_x = false;  ///< panels of a column have one x axis, labelled at the bottom
-  std::vector<Panel> panels;
+  std::vector<Panel> panels = {};
 };
 
 }  // namespace foucault::plot

@@ -29,10 +29,4 @@ Ticks log_ticks(double min, double max, int count, const std::string& unit = {})
 /// Seconds in steps that suit a clock, shown in s (up to 5 min), min (up to 5 h) or h.
 Ticks duration_ticks(double min, double max, int count);
 
-/// A number with a true minus sign and `decimals` decimals; thousands parted from 10 000 on.
-std::string number_text(double value, int decimals);
-
-/// A number with `significant` digits, as number_text; "–" if it is not finite.
-std::string significant_text(double value, int significant = 3);
-
 }  // namespace foucault::plot
