@@ -80,19 +80,30 @@ std::string listed(const std::vector<std::string>& words) {
   return text;
 }
 
+struct NamedNees {
+  const char* name;
+  const char* panel;
+  const std::optional<SquareConsistency> Consistency::*squares;
+  const DecimatedTable RunData::*table;
+};
+
+constexpr std::array<NamedNees, 3> kNees{
+    {{"position", "Position", &Consistency::position_nees, &RunData::position_nees},
+     {"velocity", "Velocity", &Consistency::velocity_nees, &RunData::velocity_nees},
+     {"attitude", "Attitude", &Consistency::attitude_nees, &RunData::attitude_nees}}};
+
 std::string nees_verdict(const Consistency& c) {
   std::vector<std::string> above;
   std::vector<std::string> below;
-  size_t count = 0;
-  for (const auto& [name, nees] :
-       {std::pair{"position", &c.position_nees}, std::pair{"velocity", &c.velocity_nees},
-        std::pair{"attitude", &c.attitude_nees}}) {
-    if (!*nees) continue;
-    ++count;
-    if ((*nees)->mean > (*nees)->mean_band.high) above.emplace_back(name);
-    if ((*nees)->mean < (*nees)->mean_band.low) below.emplace_back(name);
+  bool any = false;
+  for (const NamedNees& nees : kNees) {
+    const std::optional<SquareConsistency>& squares = c.*nees.squares;
+    if (!squares) continue;
+    any = true;
+    if (squares->mean > squares->mean_band.high) above.emplace_back(nees.name);
+    if (squares->mean < squares->mean_band.low) below.emplace_back(nees.name);
   }
-  if (count == 0) return {};
+  if (!any) return {};
   std::string text = "Against the reference: ";
   if (above.empty() && below.empty()) return text + "the mean NEES lies within its band.";
   if (!above.empty()) {
@@ -158,10 +169,9 @@ Table square_table(const Consistency& c) {
   table.header = {"",        "Mean",     "95 % band of the mean", "Inside their bounds",
                   "Samples", "Effective"};
   if (c.nis.samples > 0) table.rows.push_back(square_row("NIS of used fixes", c.nis));
-  for (const auto& [name, nees] : {std::pair{"NEES of position", &c.position_nees},
-                                   std::pair{"NEES of velocity", &c.velocity_nees},
-                                   std::pair{"NEES of attitude", &c.attitude_nees}}) {
-    if (*nees) table.rows.push_back(square_row(name, **nees));
+  for (const NamedNees& nees : kNees) {
+    if (!(c.*nees.squares)) continue;
+    table.rows.push_back(square_row(std::string("NEES of ") + nees.name, *(c.*nees.squares)));
   }
   table.note = fmt::format(
       "If the covariances are right the mean is 3, and 95 % lie in the bounds {} (chi-square, 3 "
@@ -315,17 +325,10 @@ std::optional<Figure> nees_figure(const RunData& data, const Consistency& c,
                      "95 % (dashed). Errors last, so the curves wander and their means vary more "
                      "than those of as many independent errors would. Far above: the estimator is "
                      "too sure of itself; far below: not sure enough.");
-  if (!data.position_nees.empty()) {
+  for (const NamedNees& nees : kNees) {
+    if ((data.*nees.table).empty()) continue;
     figure.panels.push_back(
-        nees_panel(data, data.position_nees, "Position", c.position_nees, c.single_band));
-  }
-  if (!data.velocity_nees.empty()) {
-    figure.panels.push_back(
-        nees_panel(data, data.velocity_nees, "Velocity", c.velocity_nees, c.single_band));
-  }
-  if (!data.attitude_nees.empty()) {
-    figure.panels.push_back(
-        nees_panel(data, data.attitude_nees, "Attitude", c.attitude_nees, c.single_band));
+        nees_panel(data, data.*nees.table, nees.panel, c.*nees.squares, c.single_band));
   }
   if (figure.panels.empty()) return std::nullopt;
   figure.height_mm = 40 + 46 * static_cast<double>(figure.panels.size());

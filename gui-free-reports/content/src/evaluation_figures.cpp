@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "foucault/content/evaluation_report.h"
@@ -41,13 +42,21 @@ std::string file_part(const std::string& name) {
   return result;
 }
 
-using Component = std::vector<double> OutageCurve::*;
-using Maximum = double OutageCurve::*;
+/// A direction in which outages drift.
+struct Component {
+  const char* name;
+  std::vector<double> OutageCurve::*values;
+  double OutageCurve::*maximum;
+};
+
+constexpr std::array<Component, 2> kComponents{
+    {{"Horizontal", &OutageCurve::horizontal_m, &OutageCurve::max_horizontal_m},
+     {"Vertical", &OutageCurve::vertical_m, &OutageCurve::max_vertical_m}}};
 
 /// Linear between samples; NaN outside of them.
-double value_at(const OutageCurve& curve, Component component, double t) {
+double value_at(const OutageCurve& curve, const Component& component, double t) {
   const std::vector<double>& times = curve.since_begin_s;
-  const std::vector<double>& values = curve.*component;
+  const std::vector<double>& values = curve.*component.values;
   const auto after = std::lower_bound(times.begin(), times.end(), t);
   if (after == times.end()) return kNoValue;
   const auto i = static_cast<size_t>(after - times.begin());
@@ -65,7 +74,7 @@ double longest(const MethodCurves& curves) {
 }
 
 /// Root mean square over the outages that last until t.
-double rms_at(const MethodCurves& curves, Component component, double t) {
+double rms_at(const MethodCurves& curves, const Component& component, double t) {
   double sum = 0;
   size_t count = 0;
   for (const OutageCurve& curve : curves.outages) {
@@ -77,8 +86,8 @@ double rms_at(const MethodCurves& curves, Component component, double t) {
   return count > 0 ? std::sqrt(sum / static_cast<double>(count)) : kNoValue;
 }
 
-void fill_rms(const MethodCurves& curves, Component component, const std::vector<double>& times,
-              Series& series) {
+void fill_rms(const MethodCurves& curves, const Component& component,
+              const std::vector<double>& times, Series& series) {
   for (const double t : times) {
     series.x.push_back(t);
     series.y.push_back(rms_at(curves, component, t));
@@ -95,7 +104,8 @@ std::vector<double> even_times(double length) {
 
 /// All outages, or as many as can be told apart: evenly in the order of their drift, the smallest
 /// and the largest among them.
-std::vector<const OutageCurve*> shown_curves(const MethodCurves& curves, Maximum maximum) {
+std::vector<const OutageCurve*> shown_curves(const MethodCurves& curves,
+                                             double OutageCurve::*maximum) {
   std::vector<const OutageCurve*> all;
   for (const OutageCurve& curve : curves.outages) all.push_back(&curve);
   if (all.size() <= kMostCurves) return all;
@@ -110,13 +120,13 @@ std::vector<const OutageCurve*> shown_curves(const MethodCurves& curves, Maximum
 }
 
 /// Outages as one series, a gap between two.
-Series outage_series(const MethodCurves& curves, Component component, Maximum maximum, Ink ink) {
+Series outage_series(const MethodCurves& curves, const Component& component, Ink ink) {
   Series series{"each outage", curves.method + " outages", Mark::line, ink};
   series.size = 0.9;
   series.opacity = 0.35;
-  for (const OutageCurve* curve : shown_curves(curves, maximum)) {
+  for (const OutageCurve* curve : shown_curves(curves, component.maximum)) {
     const std::vector<double>& times = curve->since_begin_s;
-    const std::vector<double>& values = curve->*component;
+    const std::vector<double>& values = curve->*component.values;
     series.x.insert(series.x.end(), times.begin(), times.end());
     series.y.insert(series.y.end(), values.begin(), values.end());
     series.x.push_back(times.empty() ? 0 : times.back());
@@ -125,7 +135,7 @@ Series outage_series(const MethodCurves& curves, Component component, Maximum ma
   return series;
 }
 
-double largest(const DriftCase& drift_case, Maximum maximum) {
+double largest(const DriftCase& drift_case, double OutageCurve::*maximum) {
   double result = 0;
   for (const MethodCurves& curves : drift_case.methods) {
     for (const OutageCurve& curve : curves.outages) {
@@ -135,14 +145,14 @@ double largest(const DriftCase& drift_case, Maximum maximum) {
   return result;
 }
 
-double maximum_rms(const MethodCurves& curves, Maximum maximum) {
+double maximum_rms(const MethodCurves& curves, double OutageCurve::*maximum) {
   double sum = 0;
   for (const OutageCurve& curve : curves.outages) sum += std::pow(curve.*maximum, 2);
   return std::sqrt(sum / std::max<double>(1, static_cast<double>(curves.outages.size())));
 }
 
-Panel curve_panel(const MethodCurves& curves, const MethodOrder& order, Component component,
-                  Maximum maximum, const std::string& y_label, double top) {
+Panel curve_panel(const MethodCurves& curves, const MethodOrder& order, const Component& component,
+                  double top) {
   Series rms = method_series(curves.method, order);
   rms.dashed = false;
   rms.size = 2.4;
@@ -153,12 +163,12 @@ Panel curve_panel(const MethodCurves& curves, const MethodOrder& order, Componen
   Panel panel;
   panel.x = {"Time in outage", "s"};
   panel.x.min = 0;
-  panel.y = {y_label, "m"};
+  panel.y = {component.name, "m"};
   panel.y.min = 0;
   panel.y.max = top > 0 ? 1.06 * top : 1;
   panel.legend = LegendPlace::none;
-  panel.note = fmt::format("{} m", significant_text(maximum_rms(curves, maximum)));
-  panel.series = {outage_series(curves, component, maximum, rms.ink), rms};
+  panel.note = fmt::format("{} m", significant_text(maximum_rms(curves, component.maximum)));
+  panel.series = {outage_series(curves, component, rms.ink), rms};
   return panel;
 }
 
@@ -186,16 +196,14 @@ Figure drift_curves(const DriftCase& drift_case, const MethodOrder& order) {
   figure.height_mm = 165;
   figure.share_x = true;
   figure.columns = std::max(1, static_cast<int>(drift_case.methods.size()));
-  const double top = largest(drift_case, &OutageCurve::max_horizontal_m);
-  const double top_vertical = largest(drift_case, &OutageCurve::max_vertical_m);
-  for (const MethodCurves& curves : drift_case.methods) {
-    figure.panels.push_back(curve_panel(curves, order, &OutageCurve::horizontal_m,
-                                        &OutageCurve::max_horizontal_m, "Horizontal", top));
-    figure.panels.back().title = curves.method;
+  for (const Component& component : kComponents) {
+    const double top = largest(drift_case, component.maximum);
+    for (const MethodCurves& curves : drift_case.methods) {
+      figure.panels.push_back(curve_panel(curves, order, component, top));
+    }
   }
-  for (const MethodCurves& curves : drift_case.methods) {
-    figure.panels.push_back(curve_panel(curves, order, &OutageCurve::vertical_m,
-                                        &OutageCurve::max_vertical_m, "Vertical", top_vertical));
+  for (size_t m = 0; m < drift_case.methods.size(); ++m) {
+    figure.panels[m].title = drift_case.methods[m].method;
   }
   // Beside the titles of more than four panels there is no room for the word.
   if (drift_case.methods.size() <= 4) {
@@ -206,12 +214,12 @@ Figure drift_curves(const DriftCase& drift_case, const MethodOrder& order) {
 
 namespace {
 
-Panel maximum_panel(const DriftCase& drift_case, const MethodOrder& order, Maximum maximum,
-                    const std::string& label) {
+Panel maximum_panel(const DriftCase& drift_case, const MethodOrder& order,
+                    const Component& component) {
   constexpr Shape kShapes[] = {Shape::dot, Shape::diamond, Shape::square, Shape::triangle};
   Panel panel;
   panel.x = {"Outage", ""};
-  panel.y = {label, "m", AxisKind::log};
+  panel.y = {component.name, "m", AxisKind::log};
   for (size_t m = 0; m < drift_case.methods.size(); ++m) {
     const MethodCurves& curves = drift_case.methods[m];
     Series series = method_series(curves.method, order);
@@ -221,7 +229,7 @@ Panel maximum_panel(const DriftCase& drift_case, const MethodOrder& order, Maxim
     series.opacity = 0.85;
     for (size_t i = 0; i < curves.outages.size(); ++i) {
       series.x.push_back(static_cast<double>(i + 1));
-      series.y.push_back(curves.outages[i].*maximum);
+      series.y.push_back(curves.outages[i].*component.maximum);
     }
     panel.series.push_back(std::move(series));
   }
@@ -238,28 +246,27 @@ Figure maximum_drifts(const DriftCase& drift_case, const MethodOrder& order) {
       "each other drift alike; the difference that matters is the one seen in nearly all outages."};
   figure.height_mm = 140;
   figure.share_x = true;
-  figure.panels = {
-      maximum_panel(drift_case, order, &OutageCurve::max_horizontal_m, "Horizontal"),
-      maximum_panel(drift_case, order, &OutageCurve::max_vertical_m, "Vertical"),
-  };
+  for (const Component& component : kComponents) {
+    figure.panels.push_back(maximum_panel(drift_case, order, component));
+  }
   return figure;
 }
 
 namespace {
 
-Panel distribution_panel(const DriftCase& drift_case, const MethodOrder& order, Maximum maximum,
-                         const std::string& label) {
+Panel distribution_panel(const DriftCase& drift_case, const MethodOrder& order,
+                         const Component& component) {
   Panel panel;
-  panel.x = {label + " maximum drift", "m", AxisKind::log};
+  panel.x = {component.name + std::string(" maximum drift"), "m", AxisKind::log};
   panel.y = {"Share of outages", "%"};
   panel.y.min = 0;
   panel.y.max = 103;
   for (const MethodCurves& curves : drift_case.methods) {
     Series series = method_series(curves.method, order);
     series.mark = Mark::steps;
-    series.column = label + " share " + curves.method;
+    series.column = component.name + std::string(" share ") + curves.method;
     std::vector<double> drifts;
-    for (const OutageCurve& curve : curves.outages) drifts.push_back(curve.*maximum);
+    for (const OutageCurve& curve : curves.outages) drifts.push_back(curve.*component.maximum);
     std::sort(drifts.begin(), drifts.end());
     for (size_t i = 0; i < drifts.size(); ++i) {
       if (i == 0) {
@@ -288,10 +295,9 @@ Figure drift_distribution(const DriftCase& drift_case, const MethodOrder& order)
       "left is better; where two curves cross, neither method is better throughout."};
   figure.height_mm = 120;
   figure.columns = 2;
-  figure.panels = {
-      distribution_panel(drift_case, order, &OutageCurve::max_horizontal_m, "Horizontal"),
-      distribution_panel(drift_case, order, &OutageCurve::max_vertical_m, "Vertical"),
-  };
+  for (const Component& component : kComponents) {
+    figure.panels.push_back(distribution_panel(drift_case, order, component));
+  }
   return figure;
 }
 
@@ -309,11 +315,11 @@ std::vector<double> growth_times(double length) {
   return times;
 }
 
-Panel growth_panel(const DriftCase& drift_case, const MethodOrder& order, Component component,
-                   const std::string& label) {
+Panel growth_panel(const DriftCase& drift_case, const MethodOrder& order,
+                   const Component& component) {
   Panel panel;
   panel.x = {"Time in outage", "s", AxisKind::log};
-  panel.y = {label + " RMS", "m", AxisKind::log};
+  panel.y = {component.name + std::string(" RMS"), "m", AxisKind::log};
   for (const MethodCurves& curves : drift_case.methods) {
     const double length = longest(curves);
     if (length <= 0) continue;
@@ -334,10 +340,9 @@ Figure drift_growth(const DriftCase& drift_case, const MethodOrder& order) {
       "squared, a gyroscope bias (or an Earth rate left out) with t cubed."};
   figure.height_mm = 120;
   figure.columns = 2;
-  figure.panels = {
-      growth_panel(drift_case, order, &OutageCurve::horizontal_m, "Horizontal"),
-      growth_panel(drift_case, order, &OutageCurve::vertical_m, "Vertical"),
-  };
+  for (const Component& component : kComponents) {
+    figure.panels.push_back(growth_panel(drift_case, order, component));
+  }
   return figure;
 }
 

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string_view>
+#include <utility>
 
 #include "foucault/plot/axis_scale.h"
 #include "foucault/plot/text.h"
@@ -57,30 +59,8 @@ void choose_length_unit(Figure& figure) {
   }
 }
 
-struct Quantity {
-  std::string noun;  ///< of the columns, after the name of the axis
-  std::string unit;
-  Names axes;
-};
-
 std::string column_name(const char* axis, const std::string& noun) {
   return std::string(axis) + " " + noun;
-}
-
-/// A panel an axis: the estimate within its 3-sigma bounds.
-void add_estimate_panels(const RunData& data, const Triad& triad, const Quantity& quantity,
-                         double least_span, Figure& figure) {
-  const DecimatedTable::Rows rows = triad.rows.rows();
-  for (size_t i = 0; i < 3; ++i) {
-    const std::string column = column_name(quantity.axes[i], quantity.noun);
-    Panel panel = time_panel(data, {quantity.axes[i], quantity.unit});
-    panel.y.least_span = least_span;
-    panel.series.push_back(
-        bounds(rows.x, rows.columns[i], rows.columns[i + 3], column + " 3 sigma"));
-    panel.series.push_back(line("estimate", Ink::blue, rows.x, rows.columns[i]));
-    panel.series.back().column = column;
-    figure.panels.push_back(std::move(panel));
-  }
 }
 
 std::string with_unit(double value, const std::string& unit) {
@@ -105,66 +85,115 @@ void add_notes(const Triad& triad, Figure& figure) {
   }
 }
 
-/// A panel an axis: the error about zero within its 3-sigma bounds.
-void add_error_panels(const RunData& data, const Triad& triad, const Quantity& quantity,
-                      Figure& figure) {
+/// A figure of three components over time within their 3-sigma bounds, a panel each.
+struct TriadFigure {
+  Triad RunData::*triad;
+  const char* name;
+  const char* title;
+  const char* caption;
+  const char* noun;  ///< of the columns, after the name of the axis
+  const char* unit;
+  Names axes;
+  double least_span;      ///< of the axes
+  bool is_error = false;  ///< about zero, with its statistics
+};
+
+constexpr std::array<TriadFigure, 3> kSolution{{
+    {&RunData::position,
+     "position",
+     "Position relative to the start",
+     "North, east and height of the IMU with 3-sigma bounds (see the uncertainty figure where "
+     "they are too narrow to be seen). Jumps at fixes after a gap are drift being corrected.",
+     "position",
+     "m",
+     {"North", "East", "Height"},
+     0.1},
+    {&RunData::velocity, "velocity", "Velocity",
+     "Velocity in the local north-east-down with 3-sigma bounds. It "
+     "should be smooth, and zero when the vehicle stands.",
+     "velocity", "m/s", kNed, 0.1},
+    {&RunData::attitude, "attitude", "Attitude of the vehicle",
+     "Roll, pitch and heading of the vehicle with 3-sigma bounds; the "
+     "heading is drawn without jumps at 360°. Heading is learnt while "
+     "the vehicle accelerates and turns, so its bounds narrow then.",
+     "angle", "°", kEuler, 0.5},
+}};
+
+constexpr std::array<TriadFigure, 3> kErrors{{
+    {&RunData::position_error, "position_error", "Position error against the reference",
+     "Estimate minus reference. If the estimator knows its own accuracy, 99.7 % of the errors lie "
+     "within the bounds; bounds that are never touched are too wide.",
+     "error", "m", kNed, 0, true},
+    {&RunData::velocity_error, "velocity_error", "Velocity error against the reference",
+     "Estimate minus reference, local north-east-down, with 3-sigma bounds.", "error", "m/s", kNed,
+     0, true},
+    {&RunData::attitude_error, "attitude_error", "Attitude error against the reference",
+     "Estimate minus reference, vehicle axes, with 3-sigma bounds. "
+     "Roll and pitch settle within seconds, the heading as the vehicle "
+     "manoeuvres; a constant offset points at a mounting angle.",
+     "error", "°", kEuler, 0, true},
+}};
+
+constexpr std::array<TriadFigure, 2> kBiases{{
+    {&RunData::gyro_bias, "gyro_bias", "Gyroscope bias",
+     "Bias on the axes of the IMU with 3-sigma bounds. After the first manoeuvres it should move "
+     "slowly, within the bounds it had before. Bounds wider than the axes are cut.",
+     "bias", "°/h", kXyz, 1},
+    {&RunData::accel_bias, "accel_bias", "Accelerometer bias",
+     "Bias on the axes of the IMU with 3-sigma bounds (1 mGal = 10⁻⁵ m/s²). The "
+     "horizontal axes are told from tilt only while the vehicle turns.",
+     "bias", "mGal", kXyz, 10},
+}};
+
+Figure triad_figure(const RunData& data, const TriadFigure& look, const std::string& subtitle) {
+  const Triad& triad = data.*look.triad;
   const DecimatedTable::Rows rows = triad.rows.rows();
   const std::vector<double> zero(rows.x.size(), 0);
+  Figure figure = stacked_figure(look.name, look.title, subtitle, look.caption);
   for (size_t i = 0; i < 3; ++i) {
-    const std::string column = column_name(quantity.axes[i], quantity.noun);
-    Panel panel = time_panel(data, {quantity.axes[i], quantity.unit});
-    panel.y.zero_centred = true;
-    panel.series.push_back(bounds(rows.x, zero, rows.columns[i + 3], column + " 3 sigma"));
-    panel.series.push_back(line("error", Ink::blue, rows.x, rows.columns[i]));
+    const std::string column = column_name(look.axes[i], look.noun);
+    Panel panel = time_panel(data, {look.axes[i], look.unit});
+    panel.y.zero_centred = look.is_error;
+    panel.y.least_span = look.least_span;
+    panel.series = {bounds(rows.x, look.is_error ? zero : rows.columns[i], rows.columns[i + 3],
+                           column + " 3 sigma"),
+                    line(look.is_error ? "error" : "estimate", Ink::blue, rows.x, rows.columns[i])};
     panel.series.back().column = column;
     figure.panels.push_back(std::move(panel));
   }
-}
-
-Figure error_figure(const RunData& data, const Triad& triad, const Quantity& quantity,
-                    Figure figure) {
-  add_error_panels(data, triad, quantity, figure);
-  if (quantity.unit == "m") choose_length_unit(figure);
+  if (!look.is_error) return figure;
+  if (look.unit == std::string_view("m")) choose_length_unit(figure);
   add_notes(triad, figure);
   return figure;
 }
 
+template <size_t N>
+std::vector<Figure> triad_figures(const RunData& data, const std::array<TriadFigure, N>& looks,
+                                  const std::string& subtitle) {
+  std::vector<Figure> figures;
+  for (const TriadFigure& look : looks) {
+    if (!(data.*look.triad).empty()) figures.push_back(triad_figure(data, look, subtitle));
+  }
+  return figures;
+}
+
+struct QualityLook {
+  const char* name;
+  Ink ink;
+};
+
+/// In the order of FixQuality.
+constexpr std::array<QualityLook, 6> kQualities{{{"unknown type", Ink::gray},
+                                                 {"single point", Ink::vermillion},
+                                                 {"differential", Ink::purple},
+                                                 {"PPP", Ink::blue},
+                                                 {"RTK float", Ink::orange},
+                                                 {"RTK fixed", Ink::green}}};
+
 }  // namespace
 
 std::string quality_name(FixQuality quality) {
-  switch (quality) {
-    case FixQuality::unknown:
-      return "unknown type";
-    case FixQuality::single:
-      return "single point";
-    case FixQuality::differential:
-      return "differential";
-    case FixQuality::ppp:
-      return "PPP";
-    case FixQuality::float_rtk:
-      return "RTK float";
-    case FixQuality::fixed_rtk:
-      return "RTK fixed";
-  }
-  return {};
-}
-
-Ink quality_ink(FixQuality quality) {
-  switch (quality) {
-    case FixQuality::unknown:
-      return Ink::gray;
-    case FixQuality::single:
-      return Ink::vermillion;
-    case FixQuality::differential:
-      return Ink::purple;
-    case FixQuality::ppp:
-      return Ink::blue;
-    case FixQuality::float_rtk:
-      return Ink::orange;
-    case FixQuality::fixed_rtk:
-      return Ink::green;
-  }
-  return Ink::gray;
+  return kQualities.at(static_cast<size_t>(quality)).name;
 }
 
 namespace {
@@ -172,10 +201,7 @@ namespace {
 /// Every fix type, in the order of its number.
 std::vector<Category> quality_categories() {
   std::vector<Category> categories;
-  for (int q = 0; q <= static_cast<int>(FixQuality::fixed_rtk); ++q) {
-    const FixQuality quality = static_cast<FixQuality>(q);
-    categories.push_back({quality_name(quality), quality_ink(quality)});
-  }
+  for (const QualityLook& quality : kQualities) categories.push_back({quality.name, quality.ink});
   return categories;
 }
 
@@ -273,36 +299,6 @@ std::optional<Figure> ground_track(const RunData& data, const std::string& subti
   return figure;
 }
 
-std::optional<Figure> position_figure(const RunData& data, const std::string& subtitle) {
-  if (data.position.empty()) return std::nullopt;
-  Figure figure = stacked_figure(
-      "position", "Position relative to the start", subtitle,
-      "North, east and height of the IMU with 3-sigma bounds (see the uncertainty figure where "
-      "they are too narrow to be seen). Jumps at fixes after a gap are drift being corrected.");
-  add_estimate_panels(data, data.position, {"position", "m", {"North", "East", "Height"}}, 0.1,
-                      figure);
-  return figure;
-}
-
-std::optional<Figure> velocity_figure(const RunData& data, const std::string& subtitle) {
-  if (data.velocity.empty()) return std::nullopt;
-  Figure figure = stacked_figure("velocity", "Velocity", subtitle,
-                                 "Velocity in the local north-east-down with 3-sigma bounds. It "
-                                 "should be smooth, and zero when the vehicle stands.");
-  add_estimate_panels(data, data.velocity, {"velocity", "m/s", kNed}, 0.1, figure);
-  return figure;
-}
-
-std::optional<Figure> attitude_figure(const RunData& data, const std::string& subtitle) {
-  if (data.attitude.empty()) return std::nullopt;
-  Figure figure = stacked_figure("attitude", "Attitude of the vehicle", subtitle,
-                                 "Roll, pitch and heading of the vehicle with 3-sigma bounds; the "
-                                 "heading is drawn without jumps at 360°. Heading is learnt while "
-                                 "the vehicle accelerates and turns, so its bounds narrow then.");
-  add_estimate_panels(data, data.attitude, {"angle", "°", kEuler}, 0.5, figure);
-  return figure;
-}
-
 namespace {
 
 Panel sigma_panel(const RunData& data, const Triad& triad, const std::string& label,
@@ -318,10 +314,7 @@ Panel sigma_panel(const RunData& data, const Triad& triad, const std::string& la
   return panel;
 }
 
-}  // namespace
-
-std::optional<Figure> uncertainty_figure(const RunData& data, const std::string& subtitle) {
-  if (data.position.empty()) return std::nullopt;
+Figure uncertainty_figure(const RunData& data, const std::string& subtitle) {
   Figure figure = stacked_figure(
       "uncertainty", "Estimated uncertainty (1σ)", subtitle,
       "Standard deviations the estimator gives itself, on logarithmic axes. They grow without GNSS "
@@ -338,50 +331,20 @@ std::optional<Figure> uncertainty_figure(const RunData& data, const std::string&
   return figure;
 }
 
-std::optional<Figure> position_error_figure(const RunData& data, const std::string& subtitle) {
-  if (data.position_error.empty()) return std::nullopt;
-  Figure figure = stacked_figure(
-      "position_error", "Position error against the reference", subtitle,
-      "Estimate minus reference. If the estimator knows its own accuracy, 99.7 % of the errors lie "
-      "within the bounds; bounds that are never touched are too wide.");
-  return error_figure(data, data.position_error, {"error", "m", kNed}, std::move(figure));
+}  // namespace
+
+std::vector<Figure> solution_figures(const RunData& data, const std::string& subtitle) {
+  std::vector<Figure> figures = triad_figures(data, kSolution, subtitle);
+  if (!data.position.empty()) figures.push_back(uncertainty_figure(data, subtitle));
+  return figures;
 }
 
-std::optional<Figure> velocity_error_figure(const RunData& data, const std::string& subtitle) {
-  if (data.velocity_error.empty()) return std::nullopt;
-  Figure figure =
-      stacked_figure("velocity_error", "Velocity error against the reference", subtitle,
-                     "Estimate minus reference, local north-east-down, with 3-sigma bounds.");
-  return error_figure(data, data.velocity_error, {"error", "m/s", kNed}, std::move(figure));
+std::vector<Figure> error_figures(const RunData& data, const std::string& subtitle) {
+  return triad_figures(data, kErrors, subtitle);
 }
 
-std::optional<Figure> attitude_error_figure(const RunData& data, const std::string& subtitle) {
-  if (data.attitude_error.empty()) return std::nullopt;
-  Figure figure = stacked_figure("attitude_error", "Attitude error against the reference", subtitle,
-                                 "Estimate minus reference, vehicle axes, with 3-sigma bounds. "
-                                 "Roll and pitch settle within seconds, the heading as the vehicle "
-                                 "manoeuvres; a constant offset points at a mounting angle.");
-  return error_figure(data, data.attitude_error, {"error", "°", kEuler}, std::move(figure));
-}
-
-std::optional<Figure> gyro_bias_figure(const RunData& data, const std::string& subtitle) {
-  if (data.gyro_bias.empty()) return std::nullopt;
-  Figure figure = stacked_figure(
-      "gyro_bias", "Gyroscope bias", subtitle,
-      "Bias on the axes of the IMU with 3-sigma bounds. After the first manoeuvres it should move "
-      "slowly, within the bounds it had before. Bounds wider than the axes are cut.");
-  add_estimate_panels(data, data.gyro_bias, {"bias", "°/h", kXyz}, 1, figure);
-  return figure;
-}
-
-std::optional<Figure> accel_bias_figure(const RunData& data, const std::string& subtitle) {
-  if (data.accel_bias.empty()) return std::nullopt;
-  Figure figure =
-      stacked_figure("accel_bias", "Accelerometer bias", subtitle,
-                     "Bias on the axes of the IMU with 3-sigma bounds (1 mGal = 10⁻⁵ m/s²). The "
-                     "horizontal axes are told from tilt only while the vehicle turns.");
-  add_estimate_panels(data, data.accel_bias, {"bias", "mGal", kXyz}, 10, figure);
-  return figure;
+std::vector<Figure> bias_figures(const RunData& data, const std::string& subtitle) {
+  return triad_figures(data, kBiases, subtitle);
 }
 
 namespace {

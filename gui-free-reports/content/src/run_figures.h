@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "foucault/plot/figure.h"
 #include "run_data.h"
@@ -10,22 +11,13 @@
 namespace foucault::content {
 
 std::string quality_name(FixQuality quality);
-plot::Ink quality_ink(FixQuality quality);
 
 std::optional<plot::Figure> ground_track(const RunData& data, const std::string& subtitle);
-
-std::optional<plot::Figure> position_figure(const RunData& data, const std::string& subtitle);
-std::optional<plot::Figure> velocity_figure(const RunData& data, const std::string& subtitle);
-std::optional<plot::Figure> attitude_figure(const RunData& data, const std::string& subtitle);
-std::optional<plot::Figure> uncertainty_figure(const RunData& data, const std::string& subtitle);
-
-std::optional<plot::Figure> position_error_figure(const RunData& data, const std::string& subtitle);
-std::optional<plot::Figure> velocity_error_figure(const RunData& data, const std::string& subtitle);
-std::optional<plot::Figure> attitude_error_figure(const RunData& data, const std::string& subtitle);
-
-std::optional<plot::Figure> gyro_bias_figure(const RunData& data, const std::string& subtitle);
-std::optional<plot::Figure> accel_bias_figure(const RunData& data, const std::string& subtitle);
-
+/// Position, velocity, attitude, and how sure the estimator is of them.
+std::vector<plot::Figure> solution_figures(const RunData& data, const std::string& subtitle);
+/// Position, velocity and attitude less those of the reference.
+std::vector<plot::Figure> error_figures(const RunData& data, const std::string& subtitle);
+std::vector<plot::Figure> bias_figures(const RunData& data, const std::string& subtitle);
 std::optional<plot::Figure> innovation_figure(const RunData& data, const std::string& subtitle);
 std::optional<plot::Figure> postfit_figure(const RunData& data, const std::string& subtitle);
 std::optional<plot::Figure> data_health_figure(const RunData& data, const std::string& subtitle);

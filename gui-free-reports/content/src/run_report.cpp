@@ -95,35 +95,11 @@ class RunReport::Collector {
     return section;
   }
 
-  Section errors() const {
-    Section section{"Errors"};
-    add_if(position_error_figure(data, subtitle()), section);
-    add_if(velocity_error_figure(data, subtitle()), section);
-    add_if(attitude_error_figure(data, subtitle()), section);
-    return section;
-  }
-
   Section gnss() const {
     Section section{"GNSS"};
     if (!data.verdicts.empty()) section.tables.push_back(fix_table(data));
     add_if(innovation_figure(data, subtitle()), section);
     add_if(postfit_figure(data, subtitle()), section);
-    return section;
-  }
-
-  Section solution() const {
-    Section section{"Solution"};
-    add_if(position_figure(data, subtitle()), section);
-    add_if(velocity_figure(data, subtitle()), section);
-    add_if(attitude_figure(data, subtitle()), section);
-    add_if(uncertainty_figure(data, subtitle()), section);
-    return section;
-  }
-
-  Section biases() const {
-    Section section{"Sensor biases"};
-    add_if(gyro_bias_figure(data, subtitle()), section);
-    add_if(accel_bias_figure(data, subtitle()), section);
     return section;
   }
 
@@ -142,8 +118,11 @@ class RunReport::Collector {
     page.banner = banner;
     page.key_numbers = key_numbers;
     for (const Section& section :
-         {overview(), timeline_section(data, subtitle()), errors(),
-          consistency_section(data, subtitle()), gnss(), solution(), biases(), health()}) {
+         {overview(), timeline_section(data, subtitle()),
+          Section{"Errors", {}, {}, error_figures(data, subtitle())},
+          consistency_section(data, subtitle()), gnss(),
+          Section{"Solution", {}, {}, solution_figures(data, subtitle())},
+          Section{"Sensor biases", {}, {}, bias_figures(data, subtitle())}, health()}) {
       if (has_content(section)) page.sections.push_back(section);
     }
     if (!labels.command.empty()) page.listings.push_back({"Command", labels.command});

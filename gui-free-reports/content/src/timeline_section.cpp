@@ -70,22 +70,23 @@ std::string plural(size_t count, const std::string& one, const std::string& more
   return fmt::format("{} {}", number_text(static_cast<double>(count), 0), count == 1 ? one : more);
 }
 
-const char* short_name(FixVerdict verdict) {
-  switch (verdict) {
-    case FixVerdict::used:
-      return "used";
-    case FixVerdict::bad_sigma:
-      return "bad sigma";
-    case FixVerdict::gated:
-      return "gated";
-    case FixVerdict::corrected:
-      return "corrected";
-    case FixVerdict::low_quality:
-      return "low quality";
-    case FixVerdict::out_of_order:
-      return "out of order";
-  }
-  return "";
+struct VerdictName {
+  FixVerdict verdict;
+  const char* brief;
+  const char* whole;
+};
+
+constexpr std::array<VerdictName, 6> kVerdicts{
+    {{FixVerdict::used, "used", "used"},
+     {FixVerdict::bad_sigma, "bad sigma", "rejected: bad sigma"},
+     {FixVerdict::gated, "gated", "rejected: too far from the prediction"},
+     {FixVerdict::corrected, "corrected", "used less an error that lasts"},
+     {FixVerdict::low_quality, "low quality", "rejected: quality too low"},
+     {FixVerdict::out_of_order, "out of order", "rejected: out of order"}}};
+
+const VerdictName& name_of(FixVerdict verdict) {
+  return *std::find_if(kVerdicts.begin(), kVerdicts.end() - 1,
+                       [verdict](const VerdictName& name) { return name.verdict == verdict; });
 }
 
 size_t rejected_fixes(const RunData& data) {
@@ -97,7 +98,7 @@ std::string rejection_text(const RunData& data) {
   for (const FixVerdict verdict : kRejections) {
     const size_t count = count_of(data, verdict);
     if (count > 0 && verdict != FixVerdict::corrected)
-      kinds.push_back(fmt::format("{} {}", count, short_name(verdict)));
+      kinds.push_back(fmt::format("{} {}", count, name_of(verdict).brief));
   }
   const size_t rejected = rejected_fixes(data);
   return fmt::format("{} of {} rejected ({})", rejected, plural(fixes(data), "fix", "fixes"),
@@ -189,8 +190,9 @@ std::vector<Lane> lanes(const RunData& data) {
   for (auto verdict = kRejections.rbegin(); verdict != kRejections.rend(); ++verdict) {
     const size_t count = count_of(data, *verdict);
     if (count == 0) continue;
-    result.push_back({fmt::format("{} ({})", short_name(*verdict), count), short_name(*verdict),
-                      Ink::vermillion, data.verdict_stretches.at(*verdict).intervals()});
+    result.push_back({fmt::format("{} ({})", name_of(*verdict).brief, count),
+                      name_of(*verdict).brief, Ink::vermillion,
+                      data.verdict_stretches.at(*verdict).intervals()});
   }
   const size_t used = count_of(data, FixVerdict::used);
   if (used > 0) {
@@ -313,23 +315,7 @@ std::optional<Figure> timeline_figure(const RunData& data, const std::string& su
 
 }  // namespace
 
-std::string verdict_name(FixVerdict verdict) {
-  switch (verdict) {
-    case FixVerdict::used:
-      return "used";
-    case FixVerdict::bad_sigma:
-      return "rejected: bad sigma";
-    case FixVerdict::gated:
-      return "rejected: too far from the prediction";
-    case FixVerdict::corrected:
-      return "used less an error that lasts";
-    case FixVerdict::low_quality:
-      return "rejected: quality too low";
-    case FixVerdict::out_of_order:
-      return "rejected: out of order";
-  }
-  return {};
-}
+std::string verdict_name(FixVerdict verdict) { return name_of(verdict).whole; }
 
 Section timeline_section(const RunData& data, const std::string& subtitle) {
   Section section{"Timeline"};
