@@ -15,11 +15,11 @@
 namespace foucault::app {
 namespace {
 
-using reports::DriftCase;
-using reports::DriftRms;
-using reports::ErrorTimeline;
-using reports::GroundPath;
-using reports::OutageMap;
+using content::DriftCase;
+using content::DriftRms;
+using content::ErrorTimeline;
+using content::GroundPath;
+using content::OutageMap;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kLongestLine = 5;  ///< over longer holes between points no line is drawn [s]
@@ -28,10 +28,10 @@ constexpr std::size_t kMostRecordings = 6;
 /// The runs of all methods over one recording with one shift.
 using ComparedRuns = std::vector<const ExperimentResult*>;
 
-reports::Bounded bounded(const Estimate& e) { return {e.value, e.low, e.high}; }
+content::Bounded bounded(const Estimate& e) { return {e.value, e.low, e.high}; }
 
-reports::OutageCurve curve(const MethodOutages::Entry& entry) {
-  reports::OutageCurve curve;
+content::OutageCurve curve(const MethodOutages::Entry& entry) {
+  content::OutageCurve curve;
   curve.label = fmt::format("{}, shift {} s, outage {}", entry.run->recording, entry.run->shift_s,
                             entry.drift->outage.index + 1);
   for (const DriftSample& sample : entry.drift->samples) {
@@ -44,8 +44,8 @@ reports::OutageCurve curve(const MethodOutages::Entry& entry) {
   return curve;
 }
 
-reports::MethodCurves method_curves(const MethodOutages& outages) {
-  reports::MethodCurves curves{outages.method, {}};
+content::MethodCurves method_curves(const MethodOutages& outages) {
+  content::MethodCurves curves{outages.method, {}};
   for (const MethodOutages::Entry& entry : outages.entries) curves.outages.push_back(curve(entry));
   return curves;
 }
@@ -179,9 +179,9 @@ OutageMap outage_map(const ComparedRuns& runs, const std::string& name) {
   return map;
 }
 
-reports::DistanceDrift::Method distance_method(const MethodOutages& outages,
+content::DistanceDrift::Method distance_method(const MethodOutages& outages,
                                                const DistanceProfile& profile) {
-  reports::DistanceDrift::Method method;
+  content::DistanceDrift::Method method;
   method.method = outages.method;
   for (const MethodOutages::Entry& entry : outages.entries) {
     method.distance_km.push_back(entry.drift->distance_m * 1e-3);
@@ -197,10 +197,10 @@ reports::DistanceDrift::Method distance_method(const MethodOutages& outages,
   return method;
 }
 
-std::vector<reports::DistanceDrift> distance_drifts(const EvaluationSummary& summary) {
-  std::vector<reports::DistanceDrift> drifts;
+std::vector<content::DistanceDrift> distance_drifts(const EvaluationSummary& summary) {
+  std::vector<content::DistanceDrift> drifts;
   for (const DistanceProfile& profile : summary.distances()) {
-    reports::DistanceDrift drift{profile.group, {}};
+    content::DistanceDrift drift{profile.group, {}};
     for (const MethodOutages& o : summary.distance_groups()) {
       if (o.group == profile.group) drift.methods.push_back(distance_method(o, profile));
     }
@@ -209,9 +209,9 @@ std::vector<reports::DistanceDrift> distance_drifts(const EvaluationSummary& sum
   return drifts;
 }
 
-std::vector<reports::Table> distance_tables(const EvaluationSummary& summary) {
+std::vector<page::Table> distance_tables(const EvaluationSummary& summary) {
   if (summary.distances().empty()) return {};
-  std::vector<reports::Table> tables{
+  std::vector<page::Table> tables{
       report_table(distance_table(summary.distances(), summary.row_header()),
                    "RMS over the outages of a bin of the largest drift in each, with the 95 % "
                    "bootstrap interval.")};
@@ -223,14 +223,14 @@ std::vector<reports::Table> distance_tables(const EvaluationSummary& summary) {
   return tables;
 }
 
-reports::Bounded bounded(const PooledSquares& squares) {
+content::Bounded bounded(const PooledSquares& squares) {
   if (squares.outages == 0) return {kNaN, kNaN, kNaN};
   return {squares.mean, squares.band.low, squares.band.high};
 }
 
-reports::NormalizedErrors::Method normalized_method(const MethodNormalizedDrifts& drifts,
+content::NormalizedErrors::Method normalized_method(const MethodNormalizedDrifts& drifts,
                                                     const std::vector<std::string>& times) {
-  reports::NormalizedErrors::Method method{drifts.method, {}, {}};
+  content::NormalizedErrors::Method method{drifts.method, {}, {}};
   for (const std::string& time : times) {
     const auto found =
         std::find_if(drifts.times.begin(), drifts.times.end(),
@@ -243,9 +243,9 @@ reports::NormalizedErrors::Method normalized_method(const MethodNormalizedDrifts
 }
 
 /// An entry an IMU, else one for the last group: all recordings together, or the only one.
-std::vector<reports::NormalizedErrors> normalized_errors(const EvaluationSummary& summary) {
+std::vector<content::NormalizedErrors> normalized_errors(const EvaluationSummary& summary) {
   const std::vector<std::string> times = times_of(summary.normalized());
-  std::vector<reports::NormalizedErrors> all;
+  std::vector<content::NormalizedErrors> all;
   for (const MethodNormalizedDrifts& drifts : summary.normalized()) {
     if (summary.row_header() != "IMU" && drifts.group != summary.rows().back().group) continue;
     if (all.empty() || all.back().name != drifts.group) all.push_back({drifts.group, times, {}});
@@ -254,8 +254,8 @@ std::vector<reports::NormalizedErrors> normalized_errors(const EvaluationSummary
   return all;
 }
 
-std::vector<reports::Table> consistency_tables(const EvaluationSummary& summary) {
-  std::vector<reports::Table> tables;
+std::vector<page::Table> consistency_tables(const EvaluationSummary& summary) {
+  std::vector<page::Table> tables;
   if (!summary.normalized().empty()) {
     tables.push_back(report_table(
         summary.normalized_table(),
@@ -275,8 +275,8 @@ std::vector<reports::Table> consistency_tables(const EvaluationSummary& summary)
   return tables;
 }
 
-std::vector<reports::KeyNumber> key_numbers(const EvaluationSummary& summary) {
-  std::vector<reports::KeyNumber> numbers;
+std::vector<page::KeyNumber> key_numbers(const EvaluationSummary& summary) {
+  std::vector<page::KeyNumber> numbers;
   for (const MethodOutages& o : summary.overall()) {
     numbers.push_back({fmt::format("{}, horizontal RMS", o.method),
                        fmt::format("{:.2f}", root_mean_square(o.horizontal_max())), "m",
@@ -286,8 +286,8 @@ std::vector<reports::KeyNumber> key_numbers(const EvaluationSummary& summary) {
   return numbers;
 }
 
-std::vector<reports::Table> report_tables(const EvaluationSummary& summary) {
-  std::vector<reports::Table> tables{report_table(
+std::vector<page::Table> report_tables(const EvaluationSummary& summary) {
+  std::vector<page::Table> tables{report_table(
       summary.rms_table(), "RMS over the outages of the largest drift in each, as in Table III.")};
   if (summary.methods().size() > 1) {
     tables.push_back(report_table(
@@ -313,8 +313,8 @@ std::vector<DriftCase> shown_cases(const EvaluationSummary& summary) {
 
 }  // namespace
 
-reports::Table report_table(const TextTable& table, const std::string& note) {
-  reports::Table shown;
+page::Table report_table(const TextTable& table, const std::string& note) {
+  page::Table shown;
   shown.title = table.title;
   shown.note = note;
   shown.header = table.header;
@@ -322,9 +322,9 @@ reports::Table report_table(const TextTable& table, const std::string& note) {
   return shown;
 }
 
-reports::EvaluationReport evaluation_report(const EvaluationSummary& summary,
+content::EvaluationReport evaluation_report(const EvaluationSummary& summary,
                                             const EvaluationLabels& labels) {
-  reports::EvaluationReport report;
+  content::EvaluationReport report;
   report.title = labels.title;
   report.subtitle = "Outages: " + outages_text(summary);
   report.methods = summary.methods();

@@ -8,8 +8,8 @@
 namespace foucault::app {
 namespace {
 
-using reports::LabCurve;
-using reports::LabMotionCurves;
+using content::LabCurve;
+using content::LabMotionCurves;
 
 /// IMUs that are so much better than the others that they have a line of their own.
 bool is_high_grade(const std::string& grade) {
@@ -112,9 +112,9 @@ std::string with_prefix(double metres) {
   return fmt::format("{:.3g} µm", metres * 1e6);
 }
 
-std::vector<reports::KeyNumber> key_numbers(const LabResult& result) {
+std::vector<page::KeyNumber> key_numbers(const LabResult& result) {
   constexpr double kSecond = 1;
-  std::vector<reports::KeyNumber> numbers;
+  std::vector<page::KeyNumber> numbers;
   for (const MotionStudy& motion : result.motions) {
     const auto position = [&](const char* model) {
       const double rate = result.plan.rate_hz;
@@ -148,8 +148,8 @@ std::vector<std::string> remarks(const LabResult& result) {
 
 }  // namespace
 
-reports::LaboratoryReport laboratory_report(const LabResult& result) {
-  reports::LaboratoryReport report;
+content::LaboratoryReport laboratory_report(const LabResult& result) {
+  content::LaboratoryReport report;
   report.subtitle = fmt::format("exact motion, {:g} to {:g} s, {:g} to {:g} Hz",
                                 result.plan.durations_s.front(), result.plan.durations_s.back(),
                                 result.plan.rates_hz.front(), result.plan.rates_hz.back());

@@ -6,11 +6,11 @@
 #include <optional>
 #include <variant>
 
+#include "foucault/content/run_report.h"
 #include "foucault/core/error.h"
 #include "foucault/core/profile.h"
 #include "foucault/diagnosis/log_check.h"
 #include "foucault/rawlog/rawlog_source.h"
-#include "foucault/reports/run_report.h"
 #include "methods.h"
 #include "output_directory.h"
 #include "profile_text.h"
@@ -78,18 +78,18 @@ void process(const std::string& log, RawlogSource& source, Estimator& estimator,
   if (source.damage()) output.damage(*source.damage());
 }
 
-reports::RunLabels labels(const RunJob& job, const std::string& config) {
+content::RunLabels labels(const RunJob& job, const std::string& config) {
   return {std::filesystem::path(job.log).filename().string(), job.method, kVersion,
           job.command_line, config};
 }
 
-void write_report(const RunResult& result, reports::RunReport& report,
+void write_report(const RunResult& result, content::RunReport& report,
                   const std::filesystem::path& folder, Console& console) {
   const StageTimer timer(Stage::draw);
   console.progress("drawing", 0);
   report.banner(verdict_banner(result));
-  for (const reports::KeyNumber& number : key_numbers(result)) report.key_number(number);
-  for (const reports::Table& table : metrics_tables(result)) report.table(table);
+  for (const page::KeyNumber& number : key_numbers(result)) report.key_number(number);
+  for (const page::Table& table : metrics_tables(result)) report.table(table);
   report.write((folder / "report").string());
 }
 
@@ -104,7 +104,7 @@ RunResult run_into(const RunJob& job, const std::filesystem::path& folder, Conso
   const Method& method = find_method(job.method);
 
   RawlogSource source(job.log, settings.imu.sample_kind(), settings.rawlog);
-  std::optional<reports::RunReport> report;
+  std::optional<content::RunReport> report;
   if (job.report) report.emplace(labels(job, config), source.mounting());
   RunOutput output(folder, source.mounting(), settings.output, method.keep_references_s,
                    report ? &*report : nullptr, console);

@@ -186,8 +186,8 @@ std::string degrees_or_dash(const std::optional<double>& angle) {
   return angle ? fmt::format("{:.4f} deg", *angle * kDegrees) : "-";
 }
 
-reports::Table gnss_table(const GnssMetrics& gnss) {
-  reports::Table table;
+page::Table gnss_table(const GnssMetrics& gnss) {
+  page::Table table;
   table.title = "GNSS";
   table.note =
       "Innovation: the fix minus its prediction before it is used. Root mean squares over " +
@@ -203,8 +203,8 @@ reports::Table gnss_table(const GnssMetrics& gnss) {
   return table;
 }
 
-reports::Table reference_table(const ReferenceMetrics& r) {
-  reports::Table table;
+page::Table reference_table(const ReferenceMetrics& r) {
+  page::Table table;
   table.title = "Errors against the reference";
   table.note = fmt::format(
       "Over {} epochs. Of Gaussian errors with the right covariance 99.7 % lie inside 3 sigma.",
@@ -223,8 +223,8 @@ reports::Table reference_table(const ReferenceMetrics& r) {
   return table;
 }
 
-reports::Table aids_table(const Aids& aids) {
-  reports::Table table;
+page::Table aids_table(const Aids& aids) {
+  page::Table table;
   table.title = "Other measurements";
   table.note =
       "Mean NIS: innovations squared by their covariance; as many as components if it is right.";
@@ -236,8 +236,8 @@ reports::Table aids_table(const Aids& aids) {
   return table;
 }
 
-reports::Table calibration_table(const std::vector<CalibratedBlock>& blocks) {
-  reports::Table table;
+page::Table calibration_table(const std::vector<CalibratedBlock>& blocks) {
+  page::Table table;
   table.title = "Calibration";
   table.note = "At the last epoch, with 1 sigma.";
   table.header = {"", "unit", "value", "sigma"};
@@ -302,7 +302,7 @@ std::string verdict_line(const RunResult& result) {
   return fmt::format("verdict    trustworthy; {}", reasons.empty() ? size_text(result) : reasons);
 }
 
-reports::Banner verdict_banner(const RunResult& result) {
+page::Banner verdict_banner(const RunResult& result) {
   const Trust& trust = result.metrics.trust;
   if (!trust.trustworthy) return {true, "This run cannot be believed", trust.reasons};
   std::vector<std::string> lines = trust.reasons;
@@ -310,9 +310,9 @@ reports::Banner verdict_banner(const RunResult& result) {
   return {false, "This run is trustworthy", lines};
 }
 
-std::vector<reports::KeyNumber> key_numbers(const RunResult& result) {
+std::vector<page::KeyNumber> key_numbers(const RunResult& result) {
   const RunMetrics& m = result.metrics;
-  std::vector<reports::KeyNumber> numbers;
+  std::vector<page::KeyNumber> numbers;
   if (m.reference) {
     numbers.push_back({"Horizontal error, RMS", fmt::format("{:.3f}", m.reference->horizontal_rmse),
                        "m", "against the reference"});
@@ -334,8 +334,8 @@ std::vector<reports::KeyNumber> key_numbers(const RunResult& result) {
   return numbers;
 }
 
-std::vector<reports::Table> metrics_tables(const RunResult& result) {
-  std::vector<reports::Table> tables;
+std::vector<page::Table> metrics_tables(const RunResult& result) {
+  std::vector<page::Table> tables;
   if (result.metrics.reference) tables.push_back(reference_table(*result.metrics.reference));
   if (result.metrics.gnss.samples > 0) tables.push_back(gnss_table(result.metrics.gnss));
   if (!result.metrics.aids.empty()) tables.push_back(aids_table(result.metrics.aids));

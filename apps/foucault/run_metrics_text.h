@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "foucault/reports/report_page.h"
+#include "foucault/page/report_page.h"
 #include "run_job.h"
 
 /// The metrics of a run, for programs, for the console and for the report.
@@ -16,9 +16,9 @@ std::vector<std::string> metrics_lines(const RunResult& result);
 
 /// Whether the run can be believed, and why.
 std::string verdict_line(const RunResult& result);
-reports::Banner verdict_banner(const RunResult& result);
+page::Banner verdict_banner(const RunResult& result);
 
-std::vector<reports::KeyNumber> key_numbers(const RunResult& result);
-std::vector<reports::Table> metrics_tables(const RunResult& result);
+std::vector<page::KeyNumber> key_numbers(const RunResult& result);
+std::vector<page::Table> metrics_tables(const RunResult& result);
 
 }  // namespace foucault::app

@@ -21,7 +21,7 @@ ReferenceComparisonOptions comparison_options(double keep_s) {
 
 RunOutput::RunOutput(const std::filesystem::path& folder, const Mounting& mounting,
                      const OutputOptions& options, double keep_references_s,
-                     reports::RunReport* report, Console& console)
+                     content::RunReport* report, Console& console)
     : mounting_(mounting),
       statistics_from_s_(options.statistics_from_s),
       solution_(folder, mounting),

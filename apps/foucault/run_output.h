@@ -4,9 +4,9 @@
 #include <optional>
 
 #include "console.h"
+#include "foucault/content/run_report.h"
 #include "foucault/evaluation/reference_error.h"
 #include "foucault/evaluation/run_metrics.h"
-#include "foucault/reports/run_report.h"
 #include "foucault/state/interfaces.h"
 #include "settings.h"
 #include "solution_writer.h"
@@ -19,7 +19,7 @@ class RunOutput : public Sink {
   /// `keep_references_s`: how far epochs may lag behind references. `report` may be null; it and
   /// the console must outlive this.
   RunOutput(const std::filesystem::path& folder, const Mounting& mounting,
-            const OutputOptions& options, double keep_references_s, reports::RunReport* report,
+            const OutputOptions& options, double keep_references_s, content::RunReport* report,
             Console& console);
 
   /// Every measurement, before the estimator gets it: references and stamps are taken from it.
@@ -50,7 +50,7 @@ class RunOutput : public Sink {
   ReferenceComparison comparison_;
   std::optional<RunMetricsCollector> metrics_;  ///< from the first fix on
   Epoch last_epoch_;
-  reports::RunReport* report_;
+  content::RunReport* report_;
   Console& console_;
 };
 

@@ -9,7 +9,7 @@
 #include "evaluation_job.h"
 #include "foucault/core/error.h"
 #include "foucault/evaluation/point_store.h"
-#include "foucault/reports/report_page.h"
+#include "foucault/page/report_page.h"
 #include "interrupt.h"
 #include "output_directory.h"
 #include "point_scorer.h"
@@ -116,7 +116,7 @@ std::vector<std::string> tune(const TuneJob& job, Console& console) {
   write_tuning(job, tunings, directory.staging());
   if (job.report) {
     console.progress("drawing", 0);
-    reports::write_report(tuning_page(job, tunings), (directory.staging() / "report").string());
+    page::write_report(tuning_page(job, tunings), (directory.staging() / "report").string());
   }
   directory.commit();
   std::vector<std::string> lines = tuning_lines(job, tunings);

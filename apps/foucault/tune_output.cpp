@@ -11,8 +11,8 @@
 #include <utility>
 
 #include "evaluation_report.h"
+#include "foucault/content/evaluation_report.h"
 #include "foucault/evaluation/drift_table.h"
-#include "foucault/reports/evaluation_report.h"
 #include "text_file.h"
 #include "version.h"
 
@@ -137,10 +137,10 @@ std::string objective_name(const TuneOptions& options) {
   return fmt::format("RMS drift, horizontal + {} vertical", options.vertical_weight);
 }
 
-reports::Figure heat_map(const TuneJob& job, const MethodTuning& tuning, std::size_t x,
-                         std::size_t y) {
+plot::Figure heat_map(const TuneJob& job, const MethodTuning& tuning, std::size_t x,
+                      std::size_t y) {
   const std::vector<GridAxis>& axes = job.config.grid.axes;
-  reports::ParameterMap map;
+  content::ParameterMap map;
   map.name = map_name(job, tuning, x, y);
   map.title = objective_name(job.config.options);
   map.subtitle = tuning.method;
@@ -154,21 +154,21 @@ reports::Figure heat_map(const TuneJob& job, const MethodTuning& tuning, std::si
   map.value_label = objective_name(job.config.options);
   map.value_unit = "m";
   map.chosen = std::pair(tuning.search.best[x], tuning.search.best[y]);
-  return reports::parameter_map(map);
+  return content::parameter_map(map);
 }
 
 /// The only parameter's curve.
-reports::Figure single_curve(const TuneJob& job, const MethodTuning& tuning) {
+plot::Figure single_curve(const TuneJob& job, const MethodTuning& tuning) {
   const GridAxis& axis = job.config.grid.axes.front();
-  reports::Series line;
+  plot::Series line;
   line.label = "objective";
   line.in_legend = false;
-  reports::Series chosen;
+  plot::Series chosen;
   chosen.label = "chosen";
-  chosen.mark = reports::Mark::points;
-  chosen.shape = reports::Shape::ring;
+  chosen.mark = plot::Mark::points;
+  chosen.shape = plot::Shape::ring;
   chosen.size = 6;
-  chosen.ink = reports::Ink::vermillion;
+  chosen.ink = plot::Ink::vermillion;
   const std::vector<double> values = numbers(axis);
   for (const auto& [point, value] : tuning.search.evaluated) {
     line.x.push_back(values[point.front()]);
@@ -176,12 +176,12 @@ reports::Figure single_curve(const TuneJob& job, const MethodTuning& tuning) {
   }
   chosen.x = {values[tuning.search.best.front()]};
   chosen.y = {tuning.search.value};
-  reports::Panel panel;
+  plot::Panel panel;
   panel.x.label = axis.key;
   panel.y.label = objective_name(job.config.options);
   panel.y.unit = "m";
   panel.series = {line, chosen};
-  reports::Figure figure;
+  plot::Figure figure;
   figure.name = fmt::format("{}_{}", file_part(tuning.method), file_part(axis.key));
   figure.title = panel.y.label;
   figure.subtitle = tuning.method;
@@ -190,9 +190,9 @@ reports::Figure single_curve(const TuneJob& job, const MethodTuning& tuning) {
   return figure;
 }
 
-std::vector<reports::Figure> figures(const TuneJob& job, const MethodTuning& tuning) {
+std::vector<plot::Figure> figures(const TuneJob& job, const MethodTuning& tuning) {
   const ParameterGrid& grid = job.config.grid;
-  std::vector<reports::Figure> figures;
+  std::vector<plot::Figure> figures;
   if (grid.axes.size() == 1 && grid.axes.front().ordered) {
     figures.push_back(single_curve(job, tuning));
   }
@@ -240,8 +240,8 @@ std::vector<std::string> edge_lines(const TuneJob& job, const std::vector<Method
   return lines;
 }
 
-std::vector<reports::KeyNumber> key_numbers(const std::vector<MethodTuning>& tunings) {
-  std::vector<reports::KeyNumber> numbers;
+std::vector<page::KeyNumber> key_numbers(const std::vector<MethodTuning>& tunings) {
+  std::vector<page::KeyNumber> numbers;
   for (const MethodTuning& tuning : tunings) {
     const PointScore& score = tuning.scores.at(tuning.search.best);
     numbers.push_back(
@@ -288,19 +288,19 @@ std::vector<std::string> tuning_lines(const TuneJob& job,
   return lines;
 }
 
-reports::ReportPage tuning_page(const TuneJob& job, const std::vector<MethodTuning>& tunings) {
+page::ReportPage tuning_page(const TuneJob& job, const std::vector<MethodTuning>& tunings) {
   Settings base = job.config.base;
-  reports::ReportPage page;
+  page::ReportPage page;
   page.title = "Parameter search";
   page.subtitle =
       fmt::format("{} over {} points of a grid, {} recording{}", objective_name(job.config.options),
                   job.config.grid.size(), job.logs.size(), job.logs.size() == 1 ? "" : "s");
   page.key_numbers = key_numbers(tunings);
-  reports::Section overview{"Overview", edge_lines(job, tunings), {}, {}};
+  page::Section overview{"Overview", edge_lines(job, tunings), {}, {}};
   overview.tables.push_back(report_table(best_table(job, tunings)));
   page.sections.push_back(std::move(overview));
   for (const MethodTuning& tuning : tunings) {
-    reports::Section section{tuning.method, {}, {}, figures(job, tuning)};
+    page::Section section{tuning.method, {}, {}, figures(job, tuning)};
     if (!section.figures.empty()) page.sections.push_back(std::move(section));
   }
   page.listings.push_back({"Command", job.command_line});

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "foucault/reports/report_page.h"
+#include "foucault/page/report_page.h"
 #include "tune_job.h"
 
 /// What a search writes and says.
@@ -21,6 +21,6 @@ std::string best_file(const TuneJob& job, const std::string& method);
 std::vector<std::string> tuning_lines(const TuneJob& job, const std::vector<MethodTuning>& tunings);
 
 /// A map for each pair of parameters in order, a curve for a parameter by itself.
-reports::ReportPage tuning_page(const TuneJob& job, const std::vector<MethodTuning>& tunings);
+page::ReportPage tuning_page(const TuneJob& job, const std::vector<MethodTuning>& tunings);
 
 }  // namespace foucault::app

@@ -9,7 +9,7 @@
 #include "evaluation_output.h"
 #include "evaluation_report.h"
 #include "foucault/evaluation/task_pool.h"
-#include "foucault/reports/report_page.h"
+#include "foucault/page/report_page.h"
 #include "output_directory.h"
 #include "run_job.h"
 
@@ -37,8 +37,8 @@ void evaluate_into(const std::vector<EvaluationCase>& cases, const EvaluationLab
   std::filesystem::create_directories(folder);
   write_evaluation(summary, labels, folder);
   console.progress("drawing", 0);
-  reports::write_report(reports::evaluation_page(evaluation_report(summary, labels)),
-                        (folder / "report").string());
+  page::write_report(content::evaluation_page(evaluation_report(summary, labels)),
+                     (folder / "report").string());
   console.say("");
   console.say(labels.title);
   say_all(evaluation_lines(summary), console);

@@ -11,7 +11,7 @@
 #include "evaluation_report.h"
 #include "foucault/core/error.h"
 #include "foucault/evaluation/task_pool.h"
-#include "foucault/reports/report_page.h"
+#include "foucault/page/report_page.h"
 #include "methods.h"
 #include "output_directory.h"
 
@@ -54,8 +54,8 @@ void evaluate_logs(const EvaluateOptions& options, Call& call) {
   write_evaluation(summary, with, directory.staging());
   if (!options.no_report) {
     call.console.progress("drawing", 0);
-    reports::write_report(reports::evaluation_page(evaluation_report(summary, with)),
-                          (directory.staging() / "report").string());
+    page::write_report(content::evaluation_page(evaluation_report(summary, with)),
+                       (directory.staging() / "report").string());
   }
   directory.commit();
   for (const std::string& line : evaluation_lines(summary)) call.console.say(line);

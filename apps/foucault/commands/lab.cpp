@@ -8,7 +8,7 @@
 #include "config_arguments.h"
 #include "fault_study.h"
 #include "foucault/evaluation/task_pool.h"
-#include "foucault/reports/report_page.h"
+#include "foucault/page/report_page.h"
 #include "laboratory_output.h"
 #include "laboratory_report.h"
 #include "methods.h"
@@ -52,8 +52,8 @@ void study_preintegration(const LabOptions& options, Call& call) {
   write_laboratory(result, directory.staging());
   if (!options.no_report) {
     call.console.progress("drawing", 0);
-    reports::write_report(reports::laboratory_page(laboratory_report(result)),
-                          (directory.staging() / "report").string());
+    page::write_report(content::laboratory_page(laboratory_report(result)),
+                       (directory.staging() / "report").string());
   }
   directory.commit();
   for (const std::string& line : laboratory_lines(result)) call.console.say(line);

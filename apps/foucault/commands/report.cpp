@@ -5,7 +5,7 @@
 
 #include "command.h"
 #include "foucault/core/error.h"
-#include "foucault/reports/report_page.h"
+#include "foucault/page/report_page.h"
 #include "output_directory.h"
 
 namespace foucault::app {
@@ -43,7 +43,7 @@ void redraw(const std::string& report, Console& console) {
   const fs::path copy = directory.staging() / folder.filename();
   copy_folder(folder, copy);
   console.progress("drawing", 0);
-  reports::redraw_report(copy.string());
+  page::redraw_report(copy.string());
   directory.commit();
 }
 

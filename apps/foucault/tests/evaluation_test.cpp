@@ -133,7 +133,7 @@ TEST_F(EvaluationTest, DriftByDistanceOfATripThatGoesFar) {
   const test::Table drifts(folder / "drift.csv");
   EXPECT_GT(drifts.column("distance_km").back(), kFarKm);
 
-  const reports::EvaluationReport report = evaluation_report(summary, {});
+  const content::EvaluationReport report = evaluation_report(summary, {});
   ASSERT_EQ(report.distances.size(), 1u);
   ASSERT_EQ(report.distances[0].methods.size(), 2u);
   EXPECT_EQ(report.distances[0].methods[1].bins.size(), profile.bins.size());
@@ -143,7 +143,7 @@ TEST_F(EvaluationTest, DriftByDistanceOfATripThatGoesFar) {
 /// The report's numbers are those of metrics.json.
 TEST_F(EvaluationTest, ReportHoldsAllFigures) {
   const EvaluationSummary summary(results(2));
-  const reports::EvaluationReport report = evaluation_report(summary, {});
+  const content::EvaluationReport report = evaluation_report(summary, {});
   EXPECT_THAT(report.methods, ElementsAre("ekf", "rough"));
   ASSERT_EQ(report.rms.size(), 2u);
   EXPECT_DOUBLE_EQ(report.rms[0].horizontal_m.value,

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "foucault/core/consistency.h"
+#include "foucault/page/report_page.h"
+#include "foucault/state/interfaces.h"
+#include "foucault/state/result.h"
+
+namespace foucault::content {
+
+/// What a run was, in words.
+struct RunLabels {
+  std::string recording;  ///< name of the log
+  std::string method;     ///< e.g. "refined"
+  std::string version;    ///< of the program
+  std::string command;    ///< the command line; may be empty
+  std::string config;     ///< the effective configuration, YAML
+  /// Root mean squares in the figures are over what is shown from here on [s since the start]: the
+  /// settling time can be left out.
+  double statistics_from_s = 0;
+};
+
+/// Collects a run in bounded memory and writes its report: ground track, timeline of faults,
+/// errors where there is a reference, consistency, GNSS innovations, position, velocity, attitude,
+/// uncertainty, biases, data health.
+/// Calls come in order of stamps within each kind; kinds may interleave in any way.
+class RunReport : public Sink {
+ public:
+  RunReport(RunLabels labels, const Mounting& mounting);
+  ~RunReport() override;
+
+  void epoch(const Epoch& epoch) override;
+  void fix(const FixResult& fix) override;
+  void notice(const Notice& notice) override;
+  /// `epoch` is the one the error belongs to; its covariance gives the bounds.
+  void reference_error(const Epoch& epoch, const ReferenceError& error);
+
+  /// Drawn over time if there is a consistency().
+  void normalized_square(const NormalizedSquare& square);
+
+  /// What the normalized squares and innovations of the whole run amount to.
+  void consistency(const Consistency& consistency);
+
+  /// End of an IMU sample's interval, for the sampling statistics.
+  void imu_stamp(int64_t t_ns);
+
+  /// A stretch in which fixes were withheld on purpose; shaded in every figure over time.
+  void outage(int64_t begin_ns, int64_t end_ns);
+
+  /// Shown above everything else.
+  void banner(const page::Banner& banner);
+
+  /// Shown large at the top, in this order.
+  void key_number(const page::KeyNumber& number);
+
+  /// Shown under "Overview", in this order.
+  void table(const page::Table& table);
+
+  /// The page with all its figures, as plain data.
+  page::ReportPage page() const;
+
+  /// Writes `folder`, usually DIR/report. Throws DataError as write_report does.
+  void write(const std::string& folder) const;
+
+ private:
+  class Collector;
+  std::unique_ptr<Collector> collector_;
+};
+
+}  // namespace foucault::content

@@ -1,0 +1,644 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "foucault/content/evaluation_report.h"
+#include "foucault/plot/text.h"
+#include "map_unit.h"
+#include "series.h"
+
+namespace foucault::content {
+
+using namespace plot;
+using namespace page;
+
+namespace {
+
+constexpr size_t kGrowthPoints = 60;
+constexpr size_t kMostCurves = 120;  // in a panel
+
+/// The look of a method's curves: its colour, and a dash on every other one so that curves that
+/// coincide are both seen.
+Series method_series(const std::string& method, const MethodOrder& order) {
+  const auto found = std::find(order.begin(), order.end(), method);
+  const auto index = static_cast<size_t>(found - order.begin());
+  Series series;
+  series.label = method;
+  series.ink = ink_of(index);
+  series.size = index % 2 == 0 ? 2.2 : 1.7;
+  series.dashed = index % 2 == 1;
+  return series;
+}
+
+/// Lower-case letters, digits and '_' of a name, for files.
+std::string file_part(const std::string& name) {
+  std::string result;
+  for (const char c : name) {
+    const bool keep = std::isalnum(static_cast<unsigned char>(c)) != 0;
+    result += keep ? static_cast<char>(std::tolower(static_cast<unsigned char>(c))) : '_';
+  }
+  return result;
+}
+
+/// A direction in which outages drift.
+struct Component {
+  const char* name;
+  std::vector<double> OutageCurve::*values;
+  double OutageCurve::*maximum;
+};
+
+constexpr std::array<Component, 2> kComponents{
+    {{"Horizontal", &OutageCurve::horizontal_m, &OutageCurve::max_horizontal_m},
+     {"Vertical", &OutageCurve::vertical_m, &OutageCurve::max_vertical_m}}};
+
+/// Linear between samples; NaN outside of them.
+double value_at(const OutageCurve& curve, const Component& component, double t) {
+  const std::vector<double>& times = curve.since_begin_s;
+  const std::vector<double>& values = curve.*component.values;
+  const auto after = std::lower_bound(times.begin(), times.end(), t);
+  if (after == times.end()) return kNoValue;
+  const auto i = static_cast<size_t>(after - times.begin());
+  if (i == 0) return times[0] == t ? values[0] : kNoValue;
+  const double share = (t - times[i - 1]) / (times[i] - times[i - 1]);
+  return values[i - 1] + share * (values[i] - values[i - 1]);
+}
+
+double longest(const MethodCurves& curves) {
+  double length = 0;
+  for (const OutageCurve& curve : curves.outages) {
+    if (!curve.since_begin_s.empty()) length = std::max(length, curve.since_begin_s.back());
+  }
+  return length;
+}
+
+/// Root mean square over the outages that last until t.
+double rms_at(const MethodCurves& curves, const Component& component, double t) {
+  double sum = 0;
+  size_t count = 0;
+  for (const OutageCurve& curve : curves.outages) {
+    const double value = value_at(curve, component, t);
+    if (!std::isfinite(value)) continue;
+    sum += value * value;
+    ++count;
+  }
+  return count > 0 ? std::sqrt(sum / static_cast<double>(count)) : kNoValue;
+}
+
+void fill_rms(const MethodCurves& curves, const Component& component,
+              const std::vector<double>& times, Series& series) {
+  for (const double t : times) {
+    series.x.push_back(t);
+    series.y.push_back(rms_at(curves, component, t));
+  }
+}
+
+std::vector<double> even_times(double length) {
+  std::vector<double> times;
+  for (size_t i = 0; i <= kGrowthPoints; ++i) {
+    times.push_back(length * static_cast<double>(i) / kGrowthPoints);
+  }
+  return times;
+}
+
+/// All outages, or as many as can be told apart: evenly in the order of their drift, the smallest
+/// and the largest among them.
+std::vector<const OutageCurve*> shown_curves(const MethodCurves& curves,
+                                             double OutageCurve::*maximum) {
+  std::vector<const OutageCurve*> all;
+  for (const OutageCurve& curve : curves.outages) all.push_back(&curve);
+  if (all.size() <= kMostCurves) return all;
+  std::stable_sort(all.begin(), all.end(), [&](const OutageCurve* a, const OutageCurve* b) {
+    return a->*maximum < b->*maximum;
+  });
+  std::vector<const OutageCurve*> shown;
+  for (size_t i = 0; i < kMostCurves; ++i) {
+    shown.push_back(all[i * (all.size() - 1) / (kMostCurves - 1)]);
+  }
+  return shown;
+}
+
+/// Outages as one series, a gap between two.
+Series outage_series(const MethodCurves& curves, const Component& component, Ink ink) {
+  Series series{"each outage", curves.method + " outages", Mark::line, ink};
+  series.size = 0.9;
+  series.opacity = 0.35;
+  for (const OutageCurve* curve : shown_curves(curves, component.maximum)) {
+    const std::vector<double>& times = curve->since_begin_s;
+    const std::vector<double>& values = curve->*component.values;
+    series.x.insert(series.x.end(), times.begin(), times.end());
+    series.y.insert(series.y.end(), values.begin(), values.end());
+    series.x.push_back(times.empty() ? 0 : times.back());
+    series.y.push_back(kNoValue);
+  }
+  return series;
+}
+
+double largest(const DriftCase& drift_case, double OutageCurve::*maximum) {
+  double result = 0;
+  for (const MethodCurves& curves : drift_case.methods) {
+    for (const OutageCurve& curve : curves.outages) {
+      if (std::isfinite(curve.*maximum)) result = std::max(result, curve.*maximum);
+    }
+  }
+  return result;
+}
+
+double maximum_rms(const MethodCurves& curves, double OutageCurve::*maximum) {
+  double sum = 0;
+  for (const OutageCurve& curve : curves.outages) sum += std::pow(curve.*maximum, 2);
+  return std::sqrt(sum / std::max<double>(1, static_cast<double>(curves.outages.size())));
+}
+
+Panel curve_panel(const MethodCurves& curves, const MethodOrder& order, const Component& component,
+                  double top) {
+  Series rms = method_series(curves.method, order);
+  rms.dashed = false;
+  rms.size = 2.4;
+  rms.column = curves.method + " rms";
+  rms.label = "RMS of all";
+  fill_rms(curves, component, even_times(longest(curves)), rms);
+
+  Panel panel;
+  panel.x = {"Time in outage", "s"};
+  panel.x.min = 0;
+  panel.y = {component.name, "m"};
+  panel.y.min = 0;
+  panel.y.max = top > 0 ? 1.06 * top : 1;
+  panel.legend = LegendPlace::none;
+  panel.note = fmt::format("{} m", significant_text(maximum_rms(curves, component.maximum)));
+  panel.series = {outage_series(curves, component, rms.ink), rms};
+  return panel;
+}
+
+std::string outages_text(const DriftCase& drift_case) {
+  const size_t count = drift_case.methods.empty() ? 0 : drift_case.methods[0].outages.size();
+  return fmt::format("{} · {} outages", drift_case.name, count);
+}
+
+}  // namespace
+
+Figure drift_curves(const DriftCase& drift_case, const MethodOrder& order) {
+  Figure figure{"drift_curves_" + file_part(drift_case.name), "Drift during outages",
+                outages_text(drift_case),
+                "Position error from the beginning of each outage: a thin line an outage, the "
+                "thick line their RMS; the figure above each panel is the RMS of the maxima. Equal "
+                "axes for all methods. Drift that grows evenly is normal; one line far above the "
+                "rest is an outage worth a look."};
+  for (const MethodCurves& curves : drift_case.methods) {
+    if (curves.outages.size() <= kMostCurves) continue;
+    figure.caption += fmt::format(
+        " Shown are {} outages of all, evenly in the order of their drift; the RMS is of all.",
+        kMostCurves);
+    break;
+  }
+  figure.height_mm = 165;
+  figure.share_x = true;
+  figure.columns = std::max(1, static_cast<int>(drift_case.methods.size()));
+  for (const Component& component : kComponents) {
+    const double top = largest(drift_case, component.maximum);
+    for (const MethodCurves& curves : drift_case.methods) {
+      figure.panels.push_back(curve_panel(curves, order, component, top));
+    }
+  }
+  for (size_t m = 0; m < drift_case.methods.size(); ++m) {
+    figure.panels[m].title = drift_case.methods[m].method;
+  }
+  // Beside the titles of more than four panels there is no room for the word.
+  if (drift_case.methods.size() <= 4) {
+    for (Panel& panel : figure.panels) panel.note = "RMS " + panel.note;
+  }
+  return figure;
+}
+
+namespace {
+
+Panel maximum_panel(const DriftCase& drift_case, const MethodOrder& order,
+                    const Component& component) {
+  constexpr Shape kShapes[] = {Shape::dot, Shape::diamond, Shape::square, Shape::triangle};
+  Panel panel;
+  panel.x = {"Outage", ""};
+  panel.y = {component.name, "m", AxisKind::log};
+  for (size_t m = 0; m < drift_case.methods.size(); ++m) {
+    const MethodCurves& curves = drift_case.methods[m];
+    Series series = method_series(curves.method, order);
+    series.mark = Mark::points;
+    series.shape = kShapes[m % std::size(kShapes)];
+    series.size = 6.5;
+    series.opacity = 0.85;
+    for (size_t i = 0; i < curves.outages.size(); ++i) {
+      series.x.push_back(static_cast<double>(i + 1));
+      series.y.push_back(curves.outages[i].*component.maximum);
+    }
+    panel.series.push_back(std::move(series));
+  }
+  return panel;
+}
+
+}  // namespace
+
+Figure maximum_drifts(const DriftCase& drift_case, const MethodOrder& order) {
+  Figure figure{
+      "maximum_drifts_" + file_part(drift_case.name), "Maximum drift of each outage",
+      outages_text(drift_case),
+      "The largest error within each outage, outages in order of time. Methods whose points lie on "
+      "each other drift alike; the difference that matters is the one seen in nearly all outages."};
+  figure.height_mm = 140;
+  figure.share_x = true;
+  for (const Component& component : kComponents) {
+    figure.panels.push_back(maximum_panel(drift_case, order, component));
+  }
+  return figure;
+}
+
+namespace {
+
+Panel distribution_panel(const DriftCase& drift_case, const MethodOrder& order,
+                         const Component& component) {
+  Panel panel;
+  panel.x = {component.name + std::string(" maximum drift"), "m", AxisKind::log};
+  panel.y = {"Share of outages", "%"};
+  panel.y.min = 0;
+  panel.y.max = 103;
+  for (const MethodCurves& curves : drift_case.methods) {
+    Series series = method_series(curves.method, order);
+    series.mark = Mark::steps;
+    series.column = component.name + std::string(" share ") + curves.method;
+    std::vector<double> drifts;
+    for (const OutageCurve& curve : curves.outages) drifts.push_back(curve.*component.maximum);
+    std::sort(drifts.begin(), drifts.end());
+    for (size_t i = 0; i < drifts.size(); ++i) {
+      if (i == 0) {
+        series.x.push_back(drifts[0]);
+        series.y.push_back(0);
+      }
+      series.x.push_back(drifts[i]);
+      series.y.push_back(100 * static_cast<double>(i + 1) / static_cast<double>(drifts.size()));
+    }
+    panel.series.push_back(std::move(series));
+  }
+  for (const double mark : {50.0, 68.0, 95.0}) {
+    panel.lines.push_back(
+        {Direction::horizontal, mark, number_text(mark, 0) + " %", Ink::gray, true});
+  }
+  return panel;
+}
+
+}  // namespace
+
+Figure drift_distribution(const DriftCase& drift_case, const MethodOrder& order) {
+  Figure figure{
+      "drift_distribution_" + file_part(drift_case.name), "Distribution of the maximum drift",
+      outages_text(drift_case),
+      "Share of the outages whose maximum drift is at most the value on the axis. A curve further "
+      "left is better; where two curves cross, neither method is better throughout."};
+  figure.height_mm = 120;
+  figure.columns = 2;
+  for (const Component& component : kComponents) {
+    figure.panels.push_back(distribution_panel(drift_case, order, component));
+  }
+  return figure;
+}
+
+namespace {
+
+/// Evenly spaced on a logarithmic axis, from the first second (or a tenth) on.
+std::vector<double> growth_times(double length) {
+  const double first = std::min(1.0, length / 10);
+  std::vector<double> times;
+  for (size_t i = 0; i <= kGrowthPoints; ++i) {
+    const double share = static_cast<double>(i) / kGrowthPoints;
+    times.push_back(first * std::pow(length / first, share));
+  }
+  if (!times.empty()) times.back() = length;
+  return times;
+}
+
+Panel growth_panel(const DriftCase& drift_case, const MethodOrder& order,
+                   const Component& component) {
+  Panel panel;
+  panel.x = {"Time in outage", "s", AxisKind::log};
+  panel.y = {component.name + std::string(" RMS"), "m", AxisKind::log};
+  for (const MethodCurves& curves : drift_case.methods) {
+    const double length = longest(curves);
+    if (length <= 0) continue;
+    Series series = method_series(curves.method, order);
+    fill_rms(curves, component, growth_times(length), series);
+    panel.series.push_back(std::move(series));
+  }
+  return panel;
+}
+
+}  // namespace
+
+Figure drift_growth(const DriftCase& drift_case, const MethodOrder& order) {
+  Figure figure{
+      "drift_growth_" + file_part(drift_case.name), "Growth of the drift", outages_text(drift_case),
+      "RMS over the outages against the time without GNSS. The slope tells the cause: white noise "
+      "of the accelerometer grows with t to the power of 1.5, a tilt or accelerometer bias with t "
+      "squared, a gyroscope bias (or an Earth rate left out) with t cubed."};
+  figure.height_mm = 120;
+  figure.columns = 2;
+  for (const Component& component : kComponents) {
+    figure.panels.push_back(growth_panel(drift_case, order, component));
+  }
+  return figure;
+}
+
+namespace {
+
+std::vector<std::string> case_names(const std::vector<DriftRms>& rms) {
+  std::vector<std::string> names;
+  for (const DriftRms& entry : rms) {
+    if (std::find(names.begin(), names.end(), entry.case_name) == names.end()) {
+      names.push_back(entry.case_name);
+    }
+  }
+  return names;
+}
+
+Panel bar_panel(const std::vector<DriftRms>& rms, const MethodOrder& order,
+                Bounded DriftRms::*component, const std::string& label) {
+  Panel panel;
+  panel.x = {"", "", AxisKind::category};
+  panel.x.categories = case_names(rms);
+  panel.y = {label, "m"};
+  panel.y.from_zero = true;
+  for (const std::string& method : order) {
+    Series series = method_series(method, order);
+    series.mark = Mark::bars;
+    series.value_labels = true;
+    for (const DriftRms& entry : rms) {
+      if (entry.method != method) continue;
+      const auto place =
+          std::find(panel.x.categories.begin(), panel.x.categories.end(), entry.case_name);
+      const Bounded& number = entry.*component;
+      series.x.push_back(static_cast<double>(place - panel.x.categories.begin()));
+      series.y.push_back(number.value);
+      series.lower.push_back(number.low);
+      series.upper.push_back(number.high);
+    }
+    panel.series.push_back(std::move(series));
+  }
+  return panel;
+}
+
+}  // namespace
+
+Figure drift_bars(const std::vector<DriftRms>& rms, const MethodOrder& order) {
+  Figure figure{"drift_rms",
+                "RMS of the maximum drift",
+                {},
+                "Root mean square over the outages of the largest error in each, with the 95 % "
+                "bootstrap interval: the paper's Table III as a figure."};
+  figure.height_mm = 165;
+  figure.share_x = true;
+  figure.panels = {
+      bar_panel(rms, order, &DriftRms::horizontal_m, "Horizontal RMS"),
+      bar_panel(rms, order, &DriftRms::vertical_m, "Vertical RMS"),
+  };
+  return figure;
+}
+
+namespace {
+
+using DistanceColumn = std::vector<double> DistanceDrift::Method::*;
+using DistanceNumber = Bounded DistanceDrift::Bin::*;
+
+/// The outages behind the bins, faint.
+Series outages_by_distance(const DistanceDrift::Method& method, DistanceColumn column, Ink ink) {
+  Series series{{}, method.method + " outage", Mark::points, ink};
+  series.size = 3.2;
+  series.opacity = 0.3;
+  series.range_role = RangeRole::most;
+  series.x = method.distance_km;
+  series.y = method.*column;
+  return series;
+}
+
+/// RMS of the bins with intervals, `shift` [km] aside so that methods that agree are both seen.
+Series bins_by_distance(const DistanceDrift::Method& method, DistanceNumber number, double shift,
+                        const Series& look) {
+  Series series = look;
+  series.label.clear();
+  series.column = method.method + " interval";
+  series.mark = Mark::points;
+  series.size = 6;
+  series.dashed = false;
+  for (const DistanceDrift::Bin& bin : method.bins) {
+    const Bounded& rms = bin.*number;
+    series.x.push_back(bin.distance_km + shift);
+    series.y.push_back(rms.value);
+    series.lower.push_back(rms.low);
+    series.upper.push_back(rms.high);
+  }
+  return series;
+}
+
+double farthest(const DistanceDrift& drift) {
+  double result = 0;
+  for (const DistanceDrift::Method& method : drift.methods) {
+    for (const double d : method.distance_km) {
+      if (std::isfinite(d)) result = std::max(result, d);
+    }
+  }
+  return result;
+}
+
+Panel distance_panel(const DistanceDrift& drift, const MethodOrder& order, DistanceColumn column,
+                     DistanceNumber number, const std::string& label) {
+  constexpr double kShift = 0.006;  // of the axis
+  Panel panel;
+  panel.x = {"Distance from the start", "km"};
+  panel.x.from_zero = true;
+  panel.y = {label, "m", AxisKind::log};
+  const double middle = 0.5 * (static_cast<double>(drift.methods.size()) - 1);
+  std::vector<Series> over;
+  for (size_t m = 0; m < drift.methods.size(); ++m) {
+    const DistanceDrift::Method& method = drift.methods[m];
+    const Series look = method_series(method.method, order);
+    const double shift = kShift * farthest(drift) * (static_cast<double>(m) - middle);
+    const Series bins = bins_by_distance(method, number, shift, look);
+    Series line = look;
+    line.column = method.method + " rms";
+    line.x = bins.x;
+    line.y = bins.y;
+    panel.series.push_back(outages_by_distance(method, column, look.ink));
+    over.push_back(std::move(line));
+    over.push_back(bins);
+  }
+  panel.series.insert(panel.series.end(), over.begin(), over.end());
+  return panel;
+}
+
+}  // namespace
+
+Figure drift_by_distance(const DistanceDrift& drift, const MethodOrder& order) {
+  const size_t outages = drift.methods.empty() ? 0 : drift.methods[0].distance_km.size();
+  Figure figure{"drift_by_distance_" + file_part(drift.name),
+                "Drift against distance from the start",
+                fmt::format("{} · {} outages", drift.name, outages),
+                "The largest drift of each outage (faint) and its root mean square over "
+                "neighbouring outages with the 95 % bootstrap interval. A method that is right "
+                "everywhere on Earth drifts alike at every distance."};
+  figure.height_mm = 165;
+  figure.share_x = true;
+  figure.panels = {
+      distance_panel(drift, order, &DistanceDrift::Method::horizontal_m,
+                     &DistanceDrift::Bin::horizontal_m, "Horizontal"),
+      distance_panel(drift, order, &DistanceDrift::Method::vertical_m,
+                     &DistanceDrift::Bin::vertical_m, "Vertical"),
+  };
+  return figure;
+}
+
+namespace {
+
+using NormalizedColumn = std::vector<Bounded> NormalizedErrors::Method::*;
+
+/// The band of each time; that of the first method which has one, as all have the same outages.
+Series normalized_band(const NormalizedErrors& errors, NormalizedColumn column) {
+  constexpr double kHalfWidth = 0.42;  // of the place of a time
+  Series band = pale_band("95 % if the sigmas are right", "band");
+  for (size_t i = 0; i < errors.times.size(); ++i) {
+    for (const NormalizedErrors::Method& method : errors.methods) {
+      const Bounded& number = (method.*column)[i];
+      if (!std::isfinite(number.low)) continue;
+      const auto centre = static_cast<double>(i);
+      add_level(centre - kHalfWidth, centre + kHalfWidth, number.low, number.high, band);
+      break;
+    }
+  }
+  return band;
+}
+
+Panel normalized_panel(const NormalizedErrors& errors, const MethodOrder& order,
+                       NormalizedColumn column, const std::string& label) {
+  constexpr double kSpread = 0.5;  // of the place of a time
+  Panel panel;
+  panel.title = label;
+  panel.x = {"Time in outage", "", AxisKind::category};
+  panel.x.categories = errors.times;
+  panel.y = {"Mean square over sigma²", "", AxisKind::log};
+  panel.series.push_back(normalized_band(errors, column));
+  const auto count = static_cast<double>(errors.methods.size());
+  for (size_t m = 0; m < errors.methods.size(); ++m) {
+    const NormalizedErrors::Method& method = errors.methods[m];
+    Series series = method_series(method.method, order);
+    series.mark = Mark::points;
+    series.size = 7;
+    for (size_t i = 0; i < errors.times.size(); ++i) {
+      const double shift = kSpread * ((static_cast<double>(m) + 0.5) / count - 0.5);
+      series.x.push_back(static_cast<double>(i) + shift);
+      series.y.push_back((method.*column)[i].value);
+    }
+    panel.series.push_back(std::move(series));
+  }
+  panel.lines.push_back({Direction::horizontal, 1, "", Ink::gray, true});
+  return panel;
+}
+
+}  // namespace
+
+Figure normalized_drift(const NormalizedErrors& errors, const MethodOrder& order) {
+  Figure figure{"normalized_drift_" + file_part(errors.name), "Errors in outages over their sigmas",
+                errors.name,
+                "Mean over the outages of the squared error over its variance, per degree of "
+                "freedom, at some times in the outage. Right sigmas give 1 (dashed), within the "
+                "band with 95 %. Points that leave the band upwards with time tell a noise of the "
+                "IMU that fits over a second and not over a minute."};
+  figure.height_mm = 110;
+  figure.columns = 2;
+  figure.panels = {
+      normalized_panel(errors, order, &NormalizedErrors::Method::horizontal, "Horizontal"),
+      normalized_panel(errors, order, &NormalizedErrors::Method::vertical, "Vertical"),
+  };
+  return figure;
+}
+
+Figure error_timeline(const ErrorTimeline& timeline, const MethodOrder& order) {
+  Panel panel;
+  panel.x = time_axis();
+  panel.y = {"Horizontal error", "m", AxisKind::log};
+  for (const TimeSpan& outage : timeline.outages) {
+    panel.shades.push_back({outage.begin_s, outage.end_s, "GNSS withheld", Ink::gray});
+  }
+  for (const ErrorTimeline::Curve& curve : timeline.curves) {
+    Series series = method_series(curve.method, order);
+    series.size = std::max(0.9, 2.3 - 0.6 * static_cast<double>(panel.series.size()));
+    series.dashed = false;
+    series.x = curve.t_s;
+    series.y = curve.horizontal_m;
+    panel.series.push_back(std::move(series));
+  }
+  Figure figure{"error_timeline_" + file_part(timeline.name), "Horizontal error over time",
+                timeline.name,
+                "Horizontal position error on a logarithmic axis. It rises during outages and has "
+                "to fall back at once with the first fixes after."};
+  figure.height_mm = 120;
+  figure.panels = {panel};
+  return figure;
+}
+
+namespace {
+
+Series path_series(const GroundPath& path, const std::string& label, Ink ink, double size) {
+  Series series{label, label + " north", Mark::line, ink};
+  series.size = size;
+  series.x = path.east_m;
+  series.y = path.north_m;
+  return series;
+}
+
+}  // namespace
+
+Figure outage_map(const OutageMap& map, const MethodOrder& order) {
+  Panel panel;
+  panel.x = {"East of the start", "m"};
+  panel.y = {"North of the start", "m"};
+  panel.x.least_span = panel.y.least_span = 1;
+  panel.equal_aspect = true;
+  panel.scale_bar = true;
+  panel.series.push_back(path_series(map.truth, "truth", Ink::light_gray, 2.2));
+  panel.series.push_back(path_series(map.truth_in_outages, "truth in outages", Ink::black, 2.2));
+  for (const OutageMap::Estimate& estimate : map.estimates) {
+    const Series look = method_series(estimate.method, order);
+    panel.series.push_back(path_series(estimate.path, estimate.method, look.ink, 1.6));
+    panel.series.back().dashed = look.dashed;
+  }
+  choose_map_unit(panel);
+  Figure figure{
+      "outage_map_" + file_part(map.name), "Ground track with outages", map.name,
+      "The true path (grey, black where GNSS was withheld) and the estimates during outages. The "
+      "distance between black and coloured line at the end of an outage is its drift."};
+  figure.height_mm = 190;
+  figure.panels = {panel};
+  return figure;
+}
+
+Figure parameter_map(const ParameterMap& map) {
+  Panel panel;
+  panel.x = {map.x_label, "", AxisKind::category};
+  panel.y = {map.y_label, "", AxisKind::category};
+  for (const double x : map.x) panel.x.categories.push_back(fmt::format("{:g}", x));
+  for (const double y : map.y) panel.y.categories.push_back(fmt::format("{:g}", y));
+  panel.colour = {map.value_label, map.value_unit};
+  panel.heat_map = HeatMap{map.x.size(), map.y.size(), map.values};
+  if (map.chosen) {
+    Series chosen = points("chosen", Ink::vermillion, 1.2, {static_cast<double>(map.chosen->first)},
+                           {static_cast<double>(map.chosen->second)});
+    chosen.shape = Shape::frame;
+    panel.series.push_back(chosen);
+  }
+  Figure figure{map.name, map.title, map.subtitle,
+                "The objective over two parameters, the others at their best; the frame marks the "
+                "chosen point. A broad valley means that the result does not hang on the exact "
+                "value; an optimum on the edge asks for a wider grid."};
+  figure.height_mm = 60 + 14 * static_cast<double>(map.y.size());
+  figure.width_mm = std::min(250.0, 75 + 26 * static_cast<double>(map.x.size()));
+  figure.panels = {panel};
+  return figure;
+}
+
+}  // namespace foucault::content

@@ -1,0 +1,302 @@
+#include "run_data.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "foucault/core/so3.h"
+#include "foucault/core/time.h"
+#include "foucault/state/vehicle_attitude.h"
+
+namespace foucault::content {
+
+using namespace plot;
+
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kDegrees = 180 / M_PI;
+constexpr double kDegreesPerHour = kDegrees * 3600;
+constexpr double kMilligal = 1e5;  // a m/s^2
+constexpr size_t kMostGaps = 64;
+constexpr size_t kMostNotices = 200;
+constexpr size_t kMostOutages = 1000;
+constexpr size_t kMostStretches = 1000;
+
+constexpr double kSemiMajorAxis = 6378137.0;       // WGS-84 [m]
+constexpr double kFlattening = 1 / 298.257223563;  // WGS-84
+
+Eigen::Vector3d sigma_of(const Eigen::Matrix3d& covariance) {
+  return covariance.diagonal().cwiseMax(0).cwiseSqrt();
+}
+
+Eigen::Vector3d degrees(const so3::Euler& euler) {
+  return kDegrees * Eigen::Vector3d(euler.roll, euler.pitch, euler.heading);
+}
+
+std::vector<double> six(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return {a.x(), a.y(), a.z(), b.x(), b.y(), b.z()};
+}
+
+}  // namespace
+
+void AxisStatistics::add(const Eigen::Vector3d& value, const Eigen::Vector3d& sigma) {
+  if (!value.allFinite()) return;
+  ++count_;
+  sum_of_squares_ += value.array().square();
+  inside_ += (value.array().abs() <= 3 * sigma.array()).cast<double>();
+}
+
+Eigen::Vector3d AxisStatistics::rms() const {
+  return (sum_of_squares_ / std::max<double>(1, static_cast<double>(count_))).sqrt();
+}
+
+Eigen::Vector3d AxisStatistics::inside_3_sigma() const {
+  return inside_ / std::max<double>(1, static_cast<double>(count_));
+}
+
+void Triad::add(double t, const Eigen::Vector3d& value, const Eigen::Vector3d& sigma) {
+  rows.add(t, six(value, sigma));
+  if (t >= statistics_from) statistics.add(value, sigma);
+}
+
+void Stretches::begin(double t) {
+  if (!intervals_.empty()) {
+    const double pause = t - intervals_.back().end;
+    if (pause >= 0 && pause <= shortest_pause_) return extend(t);
+  }
+  intervals_.push_back({t, t});
+  if (intervals_.size() > kMostStretches) join_closest();
+}
+
+void Stretches::extend(double t) {
+  if (!intervals_.empty()) intervals_.back().end = std::max(intervals_.back().end, t);
+}
+
+std::vector<Interval> Stretches::intervals() const {
+  std::vector<Interval> sorted = intervals_;
+  std::sort(sorted.begin(), sorted.end(),
+            [](const Interval& a, const Interval& b) { return a.begin < b.begin; });
+  return sorted;
+}
+
+/// At least half of them.
+void Stretches::join_closest() {
+  intervals_ = intervals();
+  std::vector<double> pauses;
+  for (size_t i = 1; i < intervals_.size(); ++i) {
+    pauses.push_back(intervals_[i].begin - intervals_[i - 1].end);
+  }
+  std::vector<double> sorted = pauses;
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+  std::nth_element(sorted.begin(), middle, sorted.end());
+  shortest_pause_ = std::max(0.0, *middle);
+  std::vector<Interval> joined{intervals_.front()};
+  for (size_t i = 1; i < intervals_.size(); ++i) {
+    if (pauses[i - 1] <= shortest_pause_) {
+      joined.back().end = std::max(joined.back().end, intervals_[i].end);
+    } else {
+      joined.push_back(intervals_[i]);
+    }
+  }
+  intervals_ = std::move(joined);
+}
+
+std::optional<double> StepWatch::observe(double t) {
+  last_was_gap_ = false;
+  if (stamps_++ == 0) {
+    first_ = last_ = t;
+    return std::nullopt;
+  }
+  const double step = t - last_;
+  recent_[(stamps_ - 2) % kMemory] = step;
+  longest_ = std::max(longest_, step);
+  last_was_gap_ = step > longest_usual();
+  if (last_was_gap_) keep_gap({last_, t});
+  steps_.add(last_, {step});
+  last_ = t;
+  return step;
+}
+
+double StepWatch::longest_usual() const {
+  return stamps_ > 1 ? std::max(least_gap_, 5 * median_step()) : least_gap_;
+}
+
+double StepWatch::median_step() const {
+  std::array<double, kMemory> steps = recent_;
+  const size_t known = std::min(stamps_ - 1, kMemory);
+  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(known / 2);
+  std::nth_element(steps.begin(), middle, steps.begin() + static_cast<std::ptrdiff_t>(known));
+  return *middle;
+}
+
+void StepWatch::keep_gap(const Interval& gap) {
+  ++gap_count_;
+  gap_duration_ += gap.length();
+  gaps_.push_back(gap);
+  if (gaps_.size() <= kMostGaps) return;
+  gaps_.erase(std::min_element(gaps_.begin(), gaps_.end(), [](const auto& a, const auto& b) {
+    return a.length() < b.length();
+  }));
+}
+
+double StepWatch::rate() const {
+  const double covered = duration() - gap_duration_;
+  return covered > 0 ? static_cast<double>(stamps_ - 1 - gap_count_) / covered : 0;
+}
+
+std::vector<Interval> StepWatch::longest_gaps() const { return gaps_; }
+
+Eigen::Vector3d StartPlane::north_east_up(const Geodetic& place) const {
+  const double middle = (start_.latitude + place.latitude) / 2;
+  const double e2 = kFlattening * (2 - kFlattening);
+  const double w2 = 1 - e2 * std::sin(middle) * std::sin(middle);
+  const double meridian = kSemiMajorAxis * (1 - e2) / (w2 * std::sqrt(w2));
+  const double transverse = kSemiMajorAxis / std::sqrt(w2);
+  return {(meridian + start_.height) * (place.latitude - start_.latitude),
+          (transverse + start_.height) * std::cos(middle) *
+              so3::wrap(place.longitude - start_.longitude),
+          place.height - start_.height};
+}
+
+RunData::RunData(const Mounting& mounting, double statistics_from)
+    : mounting_(mounting), statistics_from_(statistics_from) {
+  for (Triad* triad : {&position_error, &velocity_error, &attitude_error, &innovation, &postfit}) {
+    triad->statistics_from = statistics_from;
+  }
+}
+
+double RunData::seconds(int64_t t_ns) {
+  if (!start_ns_) start_ns_ = t_ns;
+  return seconds_between(*start_ns_, t_ns);
+}
+
+Eigen::Vector3d RunData::place(const Geodetic& geodetic) {
+  if (!plane_) plane_.emplace(geodetic);
+  return plane_->north_east_up(geodetic);
+}
+
+void RunData::mark_gap() {
+  track.add_gap();
+  for (Triad* triad : {&position, &velocity, &attitude, &gyro_bias, &accel_bias, &position_error,
+                       &velocity_error, &attitude_error}) {
+    triad->rows.add_gap();
+  }
+  for (DecimatedTable* nees : {&position_nees, &velocity_nees, &attitude_nees}) nees->add_gap();
+}
+
+void RunData::add(const Epoch& epoch) {
+  const double t = seconds(epoch.t_ns);
+  epoch_steps.observe(t);
+  if (epoch_steps.last_was_gap()) mark_gap();
+
+  const Eigen::Vector3d p = place(epoch.position);
+  track.add(t, {p.x(), p.y()});
+  position.add(t, p, epoch.sigma_of(block::position));
+  velocity.add(t, epoch.velocity_n, epoch.sigma_of(block::velocity));
+  gyro_bias.add(t, kDegreesPerHour * epoch.bias.gyro,
+                kDegreesPerHour * epoch.sigma_of(block::gyro_bias));
+  accel_bias.add(t, kMilligal * epoch.bias.accel, kMilligal * epoch.sigma_of(block::accel_bias));
+
+  const VehicleAttitude vehicle = vehicle_attitude(epoch, mounting_);
+  so3::Euler euler = vehicle.euler;
+  if (last_heading_) euler.heading = *last_heading_ + so3::wrap(euler.heading - *last_heading_);
+  last_heading_ = euler.heading;
+  attitude.add(t, degrees(euler), kDegrees * vehicle.sigma);
+}
+
+void RunData::add(const FixResult& fix) {
+  const double t = seconds(fix.t_ns);
+  const bool used = fix.verdict == FixVerdict::used;
+  ++qualities[fix.quality];
+  ++verdicts[fix.verdict];
+  watch_verdict(t, fix.verdict);
+  fix_types.add(t, {static_cast<double>(fix.quality), used ? 0.0 : 1.0});
+  const Eigen::Vector3d p = place(fix.antenna);
+  const Eigen::Vector3d sigma = sigma_of(fix.innovation_covariance);
+  if (used) {
+    fix_steps.observe(t);
+    if (fix_steps.last_was_gap()) {
+      nis.add_gap();
+      innovation.rows.add_gap();
+      postfit.rows.add_gap();
+    }
+    fix_places.add(t, {p.x(), p.y(), static_cast<double>(fix.quality)});
+    innovation.add(t, fix.innovation_n, sigma);
+    postfit.add(t, fix.postfit_n, sigma);
+  } else {
+    rejected_places.add(t, {p.x(), p.y()});
+    rejected_innovation.add(t, fix.innovation_n, sigma);
+  }
+}
+
+/// A stretch goes on as long as all fixes fare alike and none is missing.
+void RunData::watch_verdict(double t, FixVerdict verdict) {
+  const double step = t - last_fix_;
+  const bool goes_on =
+      last_verdict_ == verdict && step >= 0 && step <= all_fix_steps_.longest_usual();
+  Stretches& stretches = verdict_stretches[verdict];
+  if (goes_on) {
+    stretches.extend(t);
+  } else {
+    stretches.begin(t);
+  }
+  if (verdict != FixVerdict::out_of_order) all_fix_steps_.observe(t);
+  last_verdict_ = verdict;
+  last_fix_ = t;
+}
+
+void RunData::add(const NormalizedSquare& square) {
+  const double t = seconds(square.t_ns);
+  switch (square.kind) {
+    case NormalizedKind::innovation:
+      if (!square.used) return rejected_nis.add(t, {square.value});
+      return nis.add(t, {square.value, square.running_mean.value_or(kNaN)});
+    case NormalizedKind::position:
+      return position_nees.add(t, {square.value});
+    case NormalizedKind::velocity:
+      return velocity_nees.add(t, {square.value});
+    case NormalizedKind::attitude:
+      return attitude_nees.add(t, {square.value});
+  }
+}
+
+void RunData::add(const Notice& notice) {
+  ++notices_seen;
+  if (notices.size() < kMostNotices) notices.push_back(notice);
+}
+
+void RunData::add(const Epoch& epoch, const ReferenceError& error) {
+  const double t = seconds(error.t_ns);
+  position_error.add(t, error.position_n, epoch.sigma_of(block::position));
+  if (error.velocity_n) {
+    velocity_error.add(t, *error.velocity_n, epoch.sigma_of(block::velocity));
+  }
+  if (error.euler) {
+    attitude_error.add(t, kDegrees * *error.euler,
+                       kDegrees * vehicle_attitude(epoch, mounting_).sigma);
+  }
+}
+
+void RunData::add_imu_stamp(int64_t t_ns) { imu_steps.observe(seconds(t_ns)); }
+
+void RunData::add_outage(int64_t begin_ns, int64_t end_ns) {
+  if (outages_.size() < kMostOutages) outages_.push_back({begin_ns, end_ns});
+}
+
+std::vector<Interval> RunData::outages() const {
+  std::vector<Interval> intervals;
+  if (!start_ns_) return intervals;
+  for (const Stretch& outage : outages_) {
+    intervals.push_back(
+        {seconds_between(*start_ns_, outage.begin_ns), seconds_between(*start_ns_, outage.end_ns)});
+  }
+  return intervals;
+}
+
+std::string RunData::not_used_name() const {
+  return verdicts.count(FixVerdict::corrected) > 0 ? "rejected or corrected" : "rejected";
+}
+
+}  // namespace foucault::content

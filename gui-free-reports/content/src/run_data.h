@@ -1,0 +1,198 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "foucault/core/consistency.h"
+#include "foucault/plot/decimation.h"
+#include "foucault/state/interfaces.h"
+#include "foucault/state/result.h"
+
+/// What a run report keeps of a run, in bounded memory. Times in seconds since the first stamp.
+namespace foucault::content {
+
+/// Root mean square and share inside three sigma, by axis.
+class AxisStatistics {
+ public:
+  void add(const Eigen::Vector3d& value, const Eigen::Vector3d& sigma);
+
+  size_t count() const { return count_; }
+  Eigen::Vector3d rms() const;
+  Eigen::Vector3d inside_3_sigma() const;  ///< 0 to 1
+
+ private:
+  size_t count_ = 0;
+  Eigen::Array3d sum_of_squares_ = Eigen::Array3d::Zero();
+  Eigen::Array3d inside_ = Eigen::Array3d::Zero();
+};
+
+/// Three components and their standard deviations over time: columns 0-2 and 3-5.
+struct Triad {
+  plot::DecimatedTable rows{6};
+  AxisStatistics statistics;
+  double statistics_from = 0;  ///< [s]
+
+  void add(double t, const Eigen::Vector3d& value, const Eigen::Vector3d& sigma);
+  bool empty() const { return rows.empty(); }
+};
+
+struct Interval {
+  double begin = 0;
+  double end = 0;
+  double length() const { return end - begin; }
+};
+
+/// Stretches of time in which something went on, in bounded memory: if there are too many, those
+/// closest to each other are joined, and from then on all that come as close.
+class Stretches {
+ public:
+  void begin(double t);
+  /// The last one, if any, reaches at least to t.
+  void extend(double t);
+
+  bool empty() const { return intervals_.empty(); }
+  /// In order of their begins.
+  std::vector<Interval> intervals() const;
+
+ private:
+  void join_closest();
+
+  std::vector<Interval> intervals_;
+  double shortest_pause_ = -1;  ///< [s]; stretches closer than that are one
+};
+
+/// Watches the steps of a sequence of stamps: how long they are, and which are gaps, that is longer
+/// than `least_gap` and than five times the median of the last steps.
+class StepWatch {
+ public:
+  explicit StepWatch(double least_gap) : least_gap_(least_gap) {}
+
+  /// The step that ends at t [s]; none for the first stamp.
+  std::optional<double> observe(double t);
+
+  bool last_was_gap() const { return last_was_gap_; }
+  /// A longer step would be a gap [s].
+  double longest_usual() const;
+  size_t stamps() const { return stamps_; }
+  double first() const { return first_; }
+  double last() const { return last_; }
+  size_t gaps() const { return gap_count_; }
+  double longest() const { return longest_; }
+  double duration() const { return stamps_ > 1 ? last_ - first_ : 0; }
+  double gap_duration() const { return gap_duration_; }
+  /// Steps a second while there was no gap [Hz].
+  double rate() const;
+  /// Each step at its begin.
+  const plot::DecimatedTable& steps() const { return steps_; }
+  /// The longest gaps, at most 64, in order of time.
+  std::vector<Interval> longest_gaps() const;
+
+ private:
+  double median_step() const;
+  void keep_gap(const Interval& gap);
+
+  static constexpr size_t kMemory = 9;
+
+  double least_gap_;
+  bool last_was_gap_ = false;
+  size_t stamps_ = 0;
+  size_t gap_count_ = 0;
+  double first_ = 0;
+  double last_ = 0;
+  double longest_ = 0;
+  double gap_duration_ = 0;
+  std::array<double, kMemory> recent_{};
+  std::vector<Interval> gaps_;
+  plot::DecimatedTable steps_{1};
+};
+
+/// North and east of a start point along the ellipsoid, and height above it [m]. For drawing: the
+/// radii of curvature are those of the middle latitude, good to 1e-5 within 100 km.
+class StartPlane {
+ public:
+  explicit StartPlane(const Geodetic& start) : start_(start) {}
+  Eigen::Vector3d north_east_up(const Geodetic& place) const;
+
+ private:
+  Geodetic start_;
+};
+
+class RunData {
+ public:
+  /// Statistics are over what comes from `statistics_from` [s] on.
+  RunData(const Mounting& mounting, double statistics_from);
+
+  double statistics_from() const { return statistics_from_; }
+
+  void add(const Epoch& epoch);
+  void add(const FixResult& fix);
+  void add(const Notice& notice);
+  void add(const Epoch& epoch, const ReferenceError& error);
+  void add(const NormalizedSquare& square);
+  void add_imu_stamp(int64_t t_ns);
+  void add_outage(int64_t begin_ns, int64_t end_ns);
+
+  /// The first stamp of a measurement or an epoch.
+  std::optional<int64_t> start_ns() const { return start_ns_; }
+
+  plot::DecimatedTable track{2};            ///< north, east
+  plot::DecimatedTable fix_places{3};       ///< north, east, quality; used fixes
+  plot::DecimatedTable rejected_places{2};  ///< north, east
+  Triad position;                           ///< north, east, up of the start [m]
+  Triad velocity;                           ///< north, east, down [m/s]
+  Triad attitude;                           ///< roll, pitch, heading (continuous) [deg]
+  Triad gyro_bias;                          ///< x, y, z of b [deg/h]
+  Triad accel_bias;                         ///< x, y, z of b [mGal]
+  Triad position_error;                     ///< north, east, down [m]
+  Triad velocity_error;                     ///< north, east, down [m/s]
+  Triad attitude_error;                     ///< roll, pitch, heading [deg]
+  Triad innovation;                         ///< used fixes, north, east, down [m]
+  Triad rejected_innovation;                ///< as innovation
+  Triad postfit;                            ///< used fixes; sigma not known
+  plot::DecimatedTable fix_types{2};        ///< quality, rejected (0 or 1)
+  plot::DecimatedTable nis{2};              ///< used fixes: NIS, running mean
+  plot::DecimatedTable rejected_nis{1};
+  plot::DecimatedTable position_nees{1};
+  plot::DecimatedTable velocity_nees{1};
+  plot::DecimatedTable attitude_nees{1};
+  std::optional<Consistency> consistency;
+  std::map<FixQuality, size_t> qualities;
+  std::map<FixVerdict, size_t> verdicts;
+  /// What to call the fixes that were not used as they are.
+  std::string not_used_name() const;
+  std::map<FixVerdict, Stretches> verdict_stretches;
+  StepWatch imu_steps{0.2};
+  StepWatch fix_steps{4.0};  ///< between used fixes
+  StepWatch epoch_steps{3.0};
+  std::vector<Interval> outages() const;
+  std::vector<Notice> notices;  ///< the first ones
+  size_t notices_seen = 0;
+
+ private:
+  struct Stretch {
+    int64_t begin_ns = 0;
+    int64_t end_ns = 0;
+  };
+
+  double seconds(int64_t t_ns);
+  Eigen::Vector3d place(const Geodetic& geodetic);
+  void mark_gap();
+  void watch_verdict(double t, FixVerdict verdict);
+
+  Mounting mounting_;
+  double statistics_from_;
+  std::vector<Stretch> outages_;
+  std::optional<int64_t> start_ns_;
+  std::optional<StartPlane> plane_;
+  StepWatch all_fix_steps_{4.0};
+  std::optional<FixVerdict> last_verdict_;
+  double last_fix_ = 0;                 // [s], whatever became of it
+  std::optional<double> last_heading_;  // [rad], continuous
+};
+
+}  // namespace foucault::content

@@ -1,0 +1,503 @@
+#include "run_figures.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string_view>
+#include <utility>
+
+#include "foucault/plot/axis_scale.h"
+#include "foucault/plot/text.h"
+#include "map_unit.h"
+#include "run_panels.h"
+
+namespace foucault::content {
+
+using namespace plot;
+
+namespace {
+
+constexpr Names kEuler{"Roll", "Pitch", "Heading"};
+constexpr Names kXyz{"x axis", "y axis", "z axis"};
+constexpr std::array<Ink, 3> kAxisInks{Ink::blue, Ink::vermillion, Ink::green};
+
+/// centre +- 3 sigma.
+Series bounds(const std::vector<double>& x, const std::vector<double>& centre,
+              const std::vector<double>& sigma, const std::string& column) {
+  Series series = pale_band("±3σ", column);
+  series.range_role = RangeRole::typical;
+  series.x = x;
+  for (size_t i = 0; i < x.size(); ++i) {
+    series.lower.push_back(centre[i] - 3 * sigma[i]);
+    series.upper.push_back(centre[i] + 3 * sigma[i]);
+  }
+  return series;
+}
+
+double largest_shown(const Figure& figure) {
+  double largest = 0;
+  for (const Panel& panel : figure.panels) {
+    const Span span = y_span(panel);
+    largest = std::max({largest, std::abs(span.min), std::abs(span.max)});
+  }
+  return largest;
+}
+
+/// Shows lengths [m] in cm or km where that reads better; the numbers stay in metres.
+void choose_length_unit(Figure& figure) {
+  const double largest = largest_shown(figure);
+  for (Panel& panel : figure.panels) {
+    if (largest < 0.5) {
+      panel.y.shown_unit = "cm";
+      panel.y.shown_factor = 100;
+    } else if (largest > 5000) {
+      panel.y.shown_unit = "km";
+      panel.y.shown_factor = 1e-3;
+    }
+  }
+}
+
+std::string column_name(const char* axis, const std::string& noun) {
+  return std::string(axis) + " " + noun;
+}
+
+std::string with_unit(double value, const std::string& unit) {
+  return significant_text(value) + (unit == "°" ? "" : " ") + unit;
+}
+
+std::string statistics_note(double rms, double inside, const std::string& unit, double factor) {
+  return fmt::format("RMS {} · {} % within 3σ", with_unit(rms * factor, unit),
+                     number_text(100 * inside, 1));
+}
+
+void add_notes(const Triad& triad, Figure& figure) {
+  const AxisStatistics& statistics = triad.statistics;
+  const Eigen::Vector3d rms = statistics.rms();
+  const Eigen::Vector3d inside = statistics.inside_3_sigma();
+  for (size_t i = 0; i < 3; ++i) {
+    Panel& panel = figure.panels[i];
+    const auto axis = static_cast<Eigen::Index>(i);
+    const std::string unit = shown_unit(panel.y);
+    panel.note = statistics_note(rms[axis], inside[axis], unit, panel.y.shown_factor) +
+                 since(triad.statistics_from);
+  }
+}
+
+/// A figure of three components over time within their 3-sigma bounds, a panel each.
+struct TriadFigure {
+  Triad RunData::*triad;
+  const char* name;
+  const char* title;
+  const char* caption;
+  const char* noun;  ///< of the columns, after the name of the axis
+  const char* unit;
+  Names axes;
+  double least_span;      ///< of the axes
+  bool is_error = false;  ///< about zero, with its statistics
+};
+
+constexpr std::array<TriadFigure, 3> kSolution{{
+    {&RunData::position,
+     "position",
+     "Position relative to the start",
+     "North, east and height of the IMU with 3-sigma bounds (see the uncertainty figure where "
+     "they are too narrow to be seen). Jumps at fixes after a gap are drift being corrected.",
+     "position",
+     "m",
+     {"North", "East", "Height"},
+     0.1},
+    {&RunData::velocity, "velocity", "Velocity",
+     "Velocity in the local north-east-down with 3-sigma bounds. It "
+     "should be smooth, and zero when the vehicle stands.",
+     "velocity", "m/s", kNed, 0.1},
+    {&RunData::attitude, "attitude", "Attitude of the vehicle",
+     "Roll, pitch and heading of the vehicle with 3-sigma bounds; the "
+     "heading is drawn without jumps at 360°. Heading is learnt while "
+     "the vehicle accelerates and turns, so its bounds narrow then.",
+     "angle", "°", kEuler, 0.5},
+}};
+
+constexpr std::array<TriadFigure, 3> kErrors{{
+    {&RunData::position_error, "position_error", "Position error against the reference",
+     "Estimate minus reference. If the estimator knows its own accuracy, 99.7 % of the errors lie "
+     "within the bounds; bounds that are never touched are too wide.",
+     "error", "m", kNed, 0, true},
+    {&RunData::velocity_error, "velocity_error", "Velocity error against the reference",
+     "Estimate minus reference, local north-east-down, with 3-sigma bounds.", "error", "m/s", kNed,
+     0, true},
+    {&RunData::attitude_error, "attitude_error", "Attitude error against the reference",
+     "Estimate minus reference, vehicle axes, with 3-sigma bounds. "
+     "Roll and pitch settle within seconds, the heading as the vehicle "
+     "manoeuvres; a constant offset points at a mounting angle.",
+     "error", "°", kEuler, 0, true},
+}};
+
+constexpr std::array<TriadFigure, 2> kBiases{{
+    {&RunData::gyro_bias, "gyro_bias", "Gyroscope bias",
+     "Bias on the axes of the IMU with 3-sigma bounds. After the first manoeuvres it should move "
+     "slowly, within the bounds it had before. Bounds wider than the axes are cut.",
+     "bias", "°/h", kXyz, 1},
+    {&RunData::accel_bias, "accel_bias", "Accelerometer bias",
+     "Bias on the axes of the IMU with 3-sigma bounds (1 mGal = 10⁻⁵ m/s²). The "
+     "horizontal axes are told from tilt only while the vehicle turns.",
+     "bias", "mGal", kXyz, 10},
+}};
+
+Figure triad_figure(const RunData& data, const TriadFigure& look, const std::string& subtitle) {
+  const Triad& triad = data.*look.triad;
+  const DecimatedTable::Rows rows = triad.rows.rows();
+  const std::vector<double> zero(rows.x.size(), 0);
+  Figure figure = stacked_figure(look.name, look.title, subtitle, look.caption);
+  for (size_t i = 0; i < 3; ++i) {
+    const std::string column = column_name(look.axes[i], look.noun);
+    Panel panel = time_panel(data, {look.axes[i], look.unit});
+    panel.y.zero_centred = look.is_error;
+    panel.y.least_span = look.least_span;
+    panel.series = {bounds(rows.x, look.is_error ? zero : rows.columns[i], rows.columns[i + 3],
+                           column + " 3 sigma"),
+                    line(look.is_error ? "error" : "estimate", Ink::blue, rows.x, rows.columns[i])};
+    panel.series.back().column = column;
+    figure.panels.push_back(std::move(panel));
+  }
+  if (!look.is_error) return figure;
+  if (look.unit == std::string_view("m")) choose_length_unit(figure);
+  add_notes(triad, figure);
+  return figure;
+}
+
+template <size_t N>
+std::vector<Figure> triad_figures(const RunData& data, const std::array<TriadFigure, N>& looks,
+                                  const std::string& subtitle) {
+  std::vector<Figure> figures;
+  for (const TriadFigure& look : looks) {
+    if (!(data.*look.triad).empty()) figures.push_back(triad_figure(data, look, subtitle));
+  }
+  return figures;
+}
+
+struct QualityLook {
+  const char* name;
+  Ink ink;
+};
+
+/// In the order of FixQuality.
+constexpr std::array<QualityLook, 6> kQualities{{{"unknown type", Ink::gray},
+                                                 {"single point", Ink::vermillion},
+                                                 {"differential", Ink::purple},
+                                                 {"PPP", Ink::blue},
+                                                 {"RTK float", Ink::orange},
+                                                 {"RTK fixed", Ink::green}}};
+
+}  // namespace
+
+std::string quality_name(FixQuality quality) {
+  return kQualities.at(static_cast<size_t>(quality)).name;
+}
+
+namespace {
+
+/// Every fix type, in the order of its number.
+std::vector<Category> quality_categories() {
+  std::vector<Category> categories;
+  for (const QualityLook& quality : kQualities) categories.push_back({quality.name, quality.ink});
+  return categories;
+}
+
+/// Rows of a gap are left out: points are not joined.
+Series fix_points(const DecimatedTable::Rows& rows) {
+  Series series{"fix", "fix north", Mark::points};
+  series.size = 1.9;
+  series.categories = quality_categories();
+  series.x = rows.columns[1];
+  series.y = rows.columns[0];
+  series.category = rows.columns[2];
+  return series;
+}
+
+Series mark_at(double x, double y, const std::string& label, Shape shape, double size) {
+  Series mark = points(label, Ink::black, size, {x}, {y});
+  mark.shape = shape;
+  mark.in_legend = false;
+  return mark;
+}
+
+/// The side of an end of the track that the track does not leave to: it leaves to where its first
+/// point is that is `distance` away, seen from that end.
+template <class Iterator>
+Side free_side(Iterator x, Iterator x_end, double distance) {
+  const double at = *x;
+  const Iterator away =
+      std::find_if(x, x_end, [&](double value) { return std::abs(value - at) > distance; });
+  return away == x_end || *away > at ? Side::left : Side::right;
+}
+
+/// Marks where the track starts and ends; one label if that is the same place.
+void mark_ends(const Series& track, Panel& panel) {
+  if (track.x.empty()) return;
+  const double size = std::max(x_span(panel).width(), y_span(panel).width());
+  const double step = 0.01 * size;
+  Annotation start{track.x.front(), track.y.front(), "start",
+                   free_side(track.x.begin(), track.x.end(), step), Ink::black};
+  const Annotation end{track.x.back(), track.y.back(), "end",
+                       free_side(track.x.rbegin(), track.x.rend(), step), Ink::black};
+  panel.series.push_back(mark_at(start.x, start.y, "start", Shape::ring, 7));
+  panel.series.push_back(mark_at(end.x, end.y, "end", Shape::square, 6));
+  if (std::hypot(end.x - start.x, end.y - start.y) < 0.04 * size) {
+    start.text = "start, end";
+    panel.annotations = {start};
+  } else {
+    panel.annotations = {start, end};
+  }
+}
+
+/// A page height that suits the shape of the track [mm].
+double track_height(const Panel& panel) {
+  const Span x = x_span(panel);
+  const Span y = y_span(panel);
+  constexpr double kWidth = 225;
+  constexpr double kHead = 42;
+  return std::clamp(kWidth * y.width() / x.width() + kHead, 130.0, 240.0);
+}
+
+}  // namespace
+
+std::optional<Figure> ground_track(const RunData& data, const std::string& subtitle) {
+  if (data.track.empty() && data.fix_places.empty()) return std::nullopt;
+  Panel panel;
+  panel.x = {"East of the start", "m"};
+  panel.y = {"North of the start", "m"};
+  panel.x.least_span = panel.y.least_span = 1;
+  panel.equal_aspect = true;
+  panel.scale_bar = true;
+
+  const DecimatedTable::Rows track = data.track.rows();
+  Series estimate = line("estimate", Ink::sky, track.columns[1], track.columns[0]);
+  estimate.column = "estimate north";
+  estimate.size = 4;
+  estimate.opacity = 0.6;
+  panel.series.push_back(estimate);
+  if (!data.fix_places.empty()) panel.series.push_back(fix_points(data.fix_places.rows()));
+  if (!data.rejected_places.empty()) {
+    const DecimatedTable::Rows rejected = data.rejected_places.rows();
+    panel.series.push_back(points(data.not_used_name() + " fix", Ink::black, 5, rejected.columns[1],
+                                  rejected.columns[0]));
+    panel.series.back().column = "rejected fix";
+    panel.series.back().shape = Shape::cross;
+    panel.series.back().range_role = RangeRole::typical;
+  }
+  mark_ends(estimate, panel);
+  choose_map_unit(panel);
+
+  Figure figure{"ground_track", "Ground track", subtitle,
+                "The estimated path of the IMU (wide line) and the GNSS fixes of the antenna, "
+                "coloured by type. In a good run the line passes through the fixes and is smooth "
+                "where they are missing."};
+  figure.height_mm = track_height(panel);
+  figure.panels.push_back(std::move(panel));
+  return figure;
+}
+
+namespace {
+
+Panel sigma_panel(const RunData& data, const Triad& triad, const std::string& label,
+                  const std::string& unit, const Names& axes) {
+  const DecimatedTable::Rows rows = triad.rows.rows();
+  Panel panel = time_panel(data, {label, unit});
+  panel.y.kind = AxisKind::log;
+  panel.legend = LegendPlace::panel;
+  for (size_t i = 0; i < 3; ++i) {
+    panel.series.push_back(line(axes[i], kAxisInks[i], rows.x, rows.columns[i + 3]));
+    panel.series.back().column = label + " sigma " + axes[i];
+  }
+  return panel;
+}
+
+Figure uncertainty_figure(const RunData& data, const std::string& subtitle) {
+  Figure figure = stacked_figure(
+      "uncertainty", "Estimated uncertainty (1σ)", subtitle,
+      "Standard deviations the estimator gives itself, on logarithmic axes. They grow without GNSS "
+      "and fall with the first fixes after.");
+  figure.height_mm = 200;
+  figure.panels = {
+      sigma_panel(data, data.position, "Position", "m", kNed),
+      sigma_panel(data, data.velocity, "Velocity", "m/s", kNed),
+      sigma_panel(data, data.attitude, "Attitude", "°", kEuler),
+  };
+  for (Panel& panel : figure.panels) {
+    for (Shade& shade : panel.shades) shade.label.clear();
+  }
+  return figure;
+}
+
+}  // namespace
+
+std::vector<Figure> solution_figures(const RunData& data, const std::string& subtitle) {
+  std::vector<Figure> figures = triad_figures(data, kSolution, subtitle);
+  if (!data.position.empty()) figures.push_back(uncertainty_figure(data, subtitle));
+  return figures;
+}
+
+std::vector<Figure> error_figures(const RunData& data, const std::string& subtitle) {
+  return triad_figures(data, kErrors, subtitle);
+}
+
+std::vector<Figure> bias_figures(const RunData& data, const std::string& subtitle) {
+  return triad_figures(data, kBiases, subtitle);
+}
+
+namespace {
+
+/// Innovation bounds of the used fixes.
+Series innovation_bounds(const DecimatedTable::Rows& used, size_t axis, const std::string& column) {
+  const std::vector<double> zero(used.x.size(), 0);
+  Series series = bounds(used.x, zero, used.columns[axis + 3], column + " 3 sigma");
+  series.label = "±3σ predicted";
+  return series;
+}
+
+Panel innovation_panel(const RunData& data, const DecimatedTable::Rows& used,
+                       const DecimatedTable::Rows& rejected, size_t axis) {
+  const std::string column = column_name(kNed[axis], "innovation");
+  Panel panel = time_panel(data, {kNed[axis], "m"});
+  panel.y.zero_centred = true;
+  panel.series.push_back(innovation_bounds(used, axis, column));
+  panel.series.push_back(points("used", Ink::blue, 2.4, used.x, used.columns[axis]));
+  panel.series.back().column = column;
+  panel.series.back().range_role = RangeRole::most;
+  if (rejected.x.empty()) return panel;
+  panel.series.push_back(
+      points(data.not_used_name(), Ink::vermillion, 5, rejected.x, rejected.columns[axis]));
+  panel.series.back().column = column + " rejected";
+  panel.series.back().shape = Shape::cross;
+  panel.series.back().range_role = RangeRole::none;
+  return panel;
+}
+
+}  // namespace
+
+std::optional<Figure> innovation_figure(const RunData& data, const std::string& subtitle) {
+  if (data.innovation.empty() && data.rejected_innovation.empty()) return std::nullopt;
+  Figure figure = stacked_figure(
+      "gnss_innovations", "GNSS innovations", subtitle,
+      "Fix minus its prediction, before it is used, with the 3-sigma bounds of the prediction and "
+      "the fix together. Good innovations are centred, have no pattern in time and stay within the "
+      "bounds. Crosses are rejected fixes; arrowheads stand for what lies outside of the axes.");
+  const DecimatedTable::Rows used = data.innovation.rows.rows();
+  const DecimatedTable::Rows rejected = data.rejected_innovation.rows.rows();
+  for (size_t axis = 0; axis < 3; ++axis) {
+    figure.panels.push_back(innovation_panel(data, used, rejected, axis));
+  }
+  choose_length_unit(figure);
+  add_notes(data.innovation, figure);
+  return figure;
+}
+
+std::optional<Figure> postfit_figure(const RunData& data, const std::string& subtitle) {
+  if (data.postfit.empty()) return std::nullopt;
+  Figure figure = stacked_figure(
+      "gnss_residuals", "GNSS residuals after use", subtitle,
+      "Fix minus the estimate that has used it. They are smaller than the innovations; steps or "
+      "slopes mean that fixes and IMU disagree (lever arm, time offset, a biased fix).");
+  const DecimatedTable::Rows rows = data.postfit.rows.rows();
+  const Eigen::Vector3d rms = data.postfit.statistics.rms();
+  for (size_t i = 0; i < 3; ++i) {
+    Panel panel = time_panel(data, {kNed[i], "m"});
+    panel.y.zero_centred = true;
+    panel.series.push_back(points("residual", Ink::blue, 2.4, rows.x, rows.columns[i]));
+    panel.series.back().range_role = RangeRole::most;
+    panel.series.back().in_legend = false;
+    figure.panels.push_back(std::move(panel));
+  }
+  choose_length_unit(figure);
+  for (size_t i = 0; i < 3; ++i) {
+    const Axis& y = figure.panels[i].y;
+    figure.panels[i].note =
+        fmt::format("RMS {} {}",
+                    significant_text(rms[static_cast<Eigen::Index>(i)] * y.shown_factor),
+                    shown_unit(y)) +
+        since(data.postfit.statistics_from);
+  }
+  return figure;
+}
+
+namespace {
+
+Panel step_panel(const RunData& data, const StepWatch& watch, const std::string& label, Ink ink) {
+  Panel panel = time_panel(data, {label, "s"});
+  const DecimatedTable::Rows rows = watch.steps().rows();
+  panel.series.push_back(line(label, ink, rows.x, rows.columns[0]));
+  panel.series.back().mark = Mark::steps;
+  panel.series.back().size = 0.9;
+  panel.series.back().in_legend = false;
+  panel.note =
+      fmt::format("{} Hz · longest {} s · {} gap{}", significant_text(watch.rate()),
+                  significant_text(watch.longest()), watch.gaps(), watch.gaps() == 1 ? "" : "s");
+  if (watch.longest() * watch.rate() > 20) {
+    panel.y.kind = AxisKind::log;
+  } else if (watch.longest() < 0.5) {
+    panel.y.shown_unit = "ms";
+    panel.y.shown_factor = 1000;
+    panel.y.from_zero = true;
+  } else {
+    panel.y.from_zero = true;
+  }
+  return panel;
+}
+
+/// A row a fix type that occurs, best at the top, and a row for rejected fixes.
+Panel type_panel(const RunData& data) {
+  Panel panel = time_panel(data, {});
+  panel.y.kind = AxisKind::category;
+  const DecimatedTable::Rows rows = data.fix_types.rows();
+  std::map<int, double> place;
+  if (data.verdicts.size() > data.verdicts.count(FixVerdict::used)) {
+    panel.y.categories.emplace_back(data.not_used_name());
+  }
+  for (const auto& [quality, count] : data.qualities) {
+    place[static_cast<int>(quality)] = static_cast<double>(panel.y.categories.size());
+    panel.y.categories.push_back(quality_name(quality));
+  }
+  Series types = points("fix type", Ink::gray, 12, {}, {});
+  Series rejected = points("rejected", Ink::black, 12, {}, {});
+  types.shape = rejected.shape = Shape::tick;
+  types.in_legend = rejected.in_legend = false;
+  types.categories = quality_categories();
+  for (size_t i = 0; i < rows.x.size(); ++i) {
+    if (!std::isfinite(rows.columns[0][i])) continue;
+    types.x.push_back(rows.x[i]);
+    types.y.push_back(place[static_cast<int>(rows.columns[0][i])]);
+    types.category.push_back(rows.columns[0][i]);
+    if (rows.columns[1][i] == 0) continue;
+    rejected.x.push_back(rows.x[i]);
+    rejected.y.push_back(0);
+  }
+  panel.series.push_back(types);
+  if (!rejected.x.empty()) panel.series.push_back(rejected);
+  return panel;
+}
+
+}  // namespace
+
+std::optional<Figure> data_health_figure(const RunData& data, const std::string& subtitle) {
+  Figure figure = stacked_figure(
+      "data_health", "Data health", subtitle,
+      "Time between IMU samples, time between GNSS fixes that were used, and fix types over time. "
+      "Healthy intervals lie on one level; every gap stands out above it.");
+  if (data.imu_steps.stamps() > 1) {
+    figure.panels.push_back(step_panel(data, data.imu_steps, "IMU interval", Ink::blue));
+  }
+  if (data.fix_steps.stamps() > 1) {
+    figure.panels.push_back(step_panel(data, data.fix_steps, "Used-fix interval", Ink::blue));
+  }
+  if (!data.fix_types.empty()) {
+    figure.panels.push_back(type_panel(data));
+    figure.panels.back().height_share =
+        0.25 + 0.15 * static_cast<double>(figure.panels.back().y.categories.size());
+  }
+  if (figure.panels.empty()) return std::nullopt;
+  return figure;
+}
+
+}  // namespace foucault::content

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "foucault/plot/figure.h"
+#include "run_data.h"
+
+/// The figures of a run; none where there are no data for it. `subtitle` names the run.
+namespace foucault::content {
+
+std::string quality_name(FixQuality quality);
+
+std::optional<plot::Figure> ground_track(const RunData& data, const std::string& subtitle);
+/// Position, velocity, attitude, and how sure the estimator is of them.
+std::vector<plot::Figure> solution_figures(const RunData& data, const std::string& subtitle);
+/// Position, velocity and attitude less those of the reference.
+std::vector<plot::Figure> error_figures(const RunData& data, const std::string& subtitle);
+std::vector<plot::Figure> bias_figures(const RunData& data, const std::string& subtitle);
+std::optional<plot::Figure> innovation_figure(const RunData& data, const std::string& subtitle);
+std::optional<plot::Figure> postfit_figure(const RunData& data, const std::string& subtitle);
+std::optional<plot::Figure> data_health_figure(const RunData& data, const std::string& subtitle);
+
+}  // namespace foucault::content

@@ -1,0 +1,178 @@
+#include "foucault/content/run_report.h"
+
+#include <fmt/format.h>
+
+#include <ctime>
+
+#include "consistency_section.h"
+#include "foucault/core/time.h"
+#include "foucault/plot/text.h"
+#include "run_data.h"
+#include "run_figures.h"
+#include "timeline_section.h"
+
+namespace foucault::content {
+
+using namespace plot;
+using namespace page;
+
+namespace {
+
+/// To the nearest second.
+std::string utc_text(int64_t t_ns) {
+  const int64_t rounded = (t_ns + kNanosecondsPerSecond / 2) / kNanosecondsPerSecond;
+  const std::time_t seconds = static_cast<std::time_t>(rounded);
+  std::tm utc{};
+  gmtime_r(&seconds, &utc);
+  return fmt::format("{:04}-{:02}-{:02} {:02}:{:02}:{:02} UTC", utc.tm_year + 1900, utc.tm_mon + 1,
+                     utc.tm_mday, utc.tm_hour, utc.tm_min, utc.tm_sec);
+}
+
+Table fix_table(const RunData& data) {
+  Table table;
+  table.title = "GNSS fixes";
+  table.header = {"", "Count"};
+  for (const auto& [quality, count] : data.qualities) {
+    table.rows.push_back({quality_name(quality), std::to_string(count)});
+  }
+  for (const auto& [verdict, count] : data.verdicts) {
+    table.rows.push_back({verdict_name(verdict), std::to_string(count)});
+  }
+  return table;
+}
+
+std::vector<std::string> sampling_row(const char* name, const StepWatch& watch) {
+  return {name,
+          std::to_string(watch.stamps()),
+          significant_text(watch.rate(), 4) + " Hz",
+          significant_text(watch.longest()) + " s",
+          std::to_string(watch.gaps()),
+          significant_text(watch.gap_duration()) + " s"};
+}
+
+Table sampling_table(const RunData& data) {
+  Table table;
+  table.title = "Sampling";
+  table.header = {"", "Count", "Rate", "Longest interval", "Gaps", "Time in gaps"};
+  if (data.imu_steps.stamps() > 1) {
+    table.rows.push_back(sampling_row("IMU samples", data.imu_steps));
+  }
+  if (data.fix_steps.stamps() > 1) {
+    table.rows.push_back(sampling_row("Used GNSS fixes", data.fix_steps));
+  }
+  if (data.epoch_steps.stamps() > 1) {
+    table.rows.push_back(sampling_row("Epochs of the solution", data.epoch_steps));
+  }
+  table.note =
+      "A gap is longer than five usual intervals and than 0.2 s (IMU), 4 s (GNSS), 3 s (epochs).";
+  return table;
+}
+
+void add_if(const std::optional<Figure>& figure, Section& section) {
+  if (figure) section.figures.push_back(*figure);
+}
+
+bool has_content(const Section& section) {
+  return !section.tables.empty() || !section.figures.empty() || !section.details.empty();
+}
+
+}  // namespace
+
+class RunReport::Collector {
+ public:
+  Collector(RunLabels run_labels, const Mounting& mounting)
+      : labels(std::move(run_labels)), data(mounting, labels.statistics_from_s) {}
+
+  std::string subtitle() const {
+    return joined({labels.recording, labels.method,
+                   data.start_ns() ? utc_text(*data.start_ns()) : std::string()},
+                  " · ");
+  }
+
+  Section overview() const {
+    Section section{"Overview", {}, tables, {}};
+    add_if(ground_track(data, subtitle()), section);
+    return section;
+  }
+
+  Section gnss() const {
+    Section section{"GNSS"};
+    if (!data.verdicts.empty()) section.tables.push_back(fix_table(data));
+    add_if(innovation_figure(data, subtitle()), section);
+    add_if(postfit_figure(data, subtitle()), section);
+    return section;
+  }
+
+  Section health() const {
+    Section section{"Data health"};
+    const Table sampling = sampling_table(data);
+    if (!sampling.rows.empty()) section.tables.push_back(sampling);
+    add_if(data_health_figure(data, subtitle()), section);
+    return section;
+  }
+
+  ReportPage page() const {
+    ReportPage page;
+    page.title = "Navigation report";
+    page.subtitle = subtitle();
+    page.banner = banner;
+    page.key_numbers = key_numbers;
+    for (const Section& section :
+         {overview(), timeline_section(data, subtitle()),
+          Section{"Errors", {}, {}, error_figures(data, subtitle())},
+          consistency_section(data, subtitle()), gnss(),
+          Section{"Solution", {}, {}, solution_figures(data, subtitle())},
+          Section{"Sensor biases", {}, {}, bias_figures(data, subtitle())}, health()}) {
+      if (has_content(section)) page.sections.push_back(section);
+    }
+    if (!labels.command.empty()) page.listings.push_back({"Command", labels.command});
+    if (!labels.config.empty()) page.listings.push_back({"Configuration", labels.config});
+    page.footer = labels.version;
+    return page;
+  }
+
+  RunLabels labels;
+  RunData data;
+  std::optional<Banner> banner;
+  std::vector<KeyNumber> key_numbers;
+  std::vector<Table> tables;
+};
+
+RunReport::RunReport(RunLabels labels, const Mounting& mounting)
+    : collector_(std::make_unique<Collector>(std::move(labels), mounting)) {}
+
+RunReport::~RunReport() = default;
+
+void RunReport::epoch(const Epoch& epoch) { collector_->data.add(epoch); }
+
+void RunReport::fix(const FixResult& fix) { collector_->data.add(fix); }
+
+void RunReport::notice(const Notice& notice) { collector_->data.add(notice); }
+
+void RunReport::reference_error(const Epoch& epoch, const ReferenceError& error) {
+  collector_->data.add(epoch, error);
+}
+
+void RunReport::normalized_square(const NormalizedSquare& square) { collector_->data.add(square); }
+
+void RunReport::consistency(const Consistency& consistency) {
+  collector_->data.consistency = consistency;
+}
+
+void RunReport::imu_stamp(int64_t t_ns) { collector_->data.add_imu_stamp(t_ns); }
+
+void RunReport::outage(int64_t begin_ns, int64_t end_ns) {
+  collector_->data.add_outage(begin_ns, end_ns);
+}
+
+void RunReport::banner(const Banner& banner) { collector_->banner = banner; }
+
+void RunReport::key_number(const KeyNumber& number) { collector_->key_numbers.push_back(number); }
+
+void RunReport::table(const Table& table) { collector_->tables.push_back(table); }
+
+ReportPage RunReport::page() const { return collector_->page(); }
+
+void RunReport::write(const std::string& folder) const { write_report(page(), folder); }
+
+}  // namespace foucault::content

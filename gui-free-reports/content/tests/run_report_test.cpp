@@ -1,0 +1,234 @@
+#include "foucault/content/run_report.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <set>
+#include <sstream>
+
+#include "demo_run.h"
+#include "foucault/plot/figure_store.h"
+
+namespace foucault::content {
+
+using namespace plot;
+using namespace page;
+
+namespace {
+
+std::set<std::string> figure_names(const ReportPage& page) {
+  std::set<std::string> names;
+  for (const Section& section : page.sections) {
+    for (const Figure& figure : section.figures) names.insert(figure.name);
+  }
+  return names;
+}
+
+TEST(RunReport, ShowsEverythingThatWasGiven) {
+  const ReportPage page = demo_page({120, true, false});
+  EXPECT_EQ(
+      figure_names(page),
+      (std::set<std::string>{"ground_track", "position", "velocity", "attitude", "uncertainty",
+                             "position_error", "velocity_error", "attitude_error", "gyro_bias",
+                             "accel_bias", "gnss_innovations", "gnss_residuals", "data_health",
+                             "timeline", "nis", "innovation_whiteness", "nees"}));
+  EXPECT_EQ(page.key_numbers.size(), 4U);
+  EXPECT_EQ(page.listings.size(), 2U) << "command and configuration";
+  EXPECT_NE(page.subtitle.find("trip.rawlog"), std::string::npos);
+  EXPECT_NE(page.subtitle.find("2025-07-08 19:34:18 UTC"), std::string::npos) << page.subtitle;
+}
+
+TEST(RunReport, ShowsNoErrorsWithoutReference) {
+  const std::set<std::string> names = figure_names(demo_page({60, false, false}));
+  EXPECT_EQ(names.count("nees"), 0U);
+  EXPECT_EQ(names.count("nis"), 1U);
+  EXPECT_EQ(names.count("position_error"), 0U);
+  EXPECT_EQ(names.count("position"), 1U);
+}
+
+TEST(RunReport, EmptyRunHasAPage) {
+  const RunReport report(kLabels, Mounting{});
+  EXPECT_TRUE(figure_names(report.page()).empty());
+  EXPECT_EQ(report.page().title, "Navigation report");
+}
+
+TEST(RunReport, FixesAreColouredByTypeAndRejectedOnesMarked) {
+  const ReportPage page = demo_page({500, false, false});
+  const Panel& track = figure_of(page, "ground_track").panels.at(0);
+  const Series& fixes = series_of(track, "fix");
+  std::set<std::string> types;
+  for (const double category : fixes.category) {
+    types.insert(fixes.categories.at(static_cast<size_t>(category)).label);
+  }
+  EXPECT_EQ(types, (std::set<std::string>{"RTK fixed", "RTK float"}));
+  EXPECT_EQ(series_of(track, "rejected fix").x.size(), 39U);
+  EXPECT_TRUE(track.equal_aspect);
+
+  const Panel& innovation = figure_of(page, "gnss_innovations").panels.at(0);
+  EXPECT_EQ(series_of(innovation, "rejected").x.size(), 39U);
+  EXPECT_EQ(series_of(innovation, "rejected").range_role, RangeRole::none);
+}
+
+TEST(RunReport, BoundsAreThreeSigma) {
+  const ReportPage page = demo_page({60, true, false});
+  const Panel& north = figure_of(page, "position_error").panels.at(0);
+  const Series& band = series_of(north, "±3σ");
+  const double sigma_at_start = 0.012 + 0.5;  // as the demo makes it
+  EXPECT_NEAR(band.upper.front(), 3 * sigma_at_start, 1e-12);
+  EXPECT_NEAR(band.lower.front(), -3 * sigma_at_start, 1e-12);
+}
+
+TEST(RunReport, PositionIsInMetresFromTheStart) {
+  RunReport report(kLabels, Mounting{});
+  Epoch epoch;
+  epoch.position = {0.7, 0.1, 100};
+  report.epoch(epoch);
+  epoch.t_ns += nanoseconds(1);
+  epoch.position = {0.7 + 1e-4, 0.1 + 1e-4, 120};
+  report.epoch(epoch);
+  const Figure figure = figure_of(report.page(), "position");
+  // WGS-84 at 0.7 rad: meridian radius 6 361 991 m, transverse radius 6 387 016 m, computed apart.
+  EXPECT_NEAR(series_of(figure.panels[0], "estimate").y.back(), 636.209, 0.01);
+  EXPECT_NEAR(series_of(figure.panels[1], "estimate").y.back(), 488.48, 0.05);
+  EXPECT_NEAR(series_of(figure.panels[2], "estimate").y.back(), 20, 1e-9);
+}
+
+TEST(RunReport, HeadingIsTheVehiclesAndHasNoJumps) {
+  Mounting mounting;
+  mounting.q_v_b = so3::from_euler({0, 0, 0.5});
+  RunReport report(kLabels, mounting);
+  for (int i = 0; i < 100; ++i) {
+    Epoch epoch;
+    epoch.t_ns = nanoseconds(i);
+    const Eigen::Quaterniond q_n_v = so3::from_euler({0.1, 0.05, 6.0 + 0.1 * i});
+    epoch.q_n_b = q_n_v * mounting.q_v_b;
+    report.epoch(epoch);
+  }
+  const Figure figure = figure_of(report.page(), "attitude");
+  const Series heading = series_of(figure.panels[2], "estimate");
+  for (size_t i = 0; i < 100; ++i) {
+    EXPECT_NEAR(heading.y[i], (6.0 + 0.1 * static_cast<double>(i)) * 180 / M_PI, 1e-9);
+  }
+  EXPECT_NEAR(series_of(figure.panels[0], "estimate").y[50], 0.1 * 180 / M_PI, 1e-9);
+}
+
+TEST(RunReport, BiasesHaveUnitsOfDataSheets) {
+  RunReport report(kLabels, Mounting{});
+  Epoch epoch;
+  epoch.bias.gyro.x() = 1.0 / 206264.80624709636;  // 1 deg/h in rad/s
+  epoch.bias.accel.z() = 1e-5;                     // 1 mGal
+  report.epoch(epoch);
+  const ReportPage page = report.page();
+  EXPECT_NEAR(series_of(figure_of(page, "gyro_bias").panels[0], "estimate").y[0], 1, 1e-9);
+  EXPECT_EQ(figure_of(page, "gyro_bias").panels[0].y.unit, "°/h");
+  EXPECT_NEAR(series_of(figure_of(page, "accel_bias").panels[2], "estimate").y[0], 1, 1e-9);
+  EXPECT_EQ(figure_of(page, "accel_bias").panels[2].y.unit, "mGal");
+}
+
+TEST(RunReport, GapsAreShadedAndNotJoined) {
+  const ReportPage page = demo_page({600, false, true});
+  std::set<std::string> shades;
+  for (const Shade& shade : figure_of(page, "position").panels[0].shades) {
+    shades.insert(shade.label);
+  }
+  EXPECT_EQ(shades, (std::set<std::string>{"GNSS withheld", "no usable GNSS", "IMU gap"}));
+
+  RunReport report(kLabels, Mounting{});
+  for (const int t : {0, 1, 2, 3, 4, 30, 31, 32}) {
+    Epoch epoch;
+    epoch.t_ns = nanoseconds(t);
+    report.epoch(epoch);
+  }
+  const Figure velocity = figure_of(report.page(), "velocity");
+  const std::vector<double>& y = series_of(velocity.panels[0], "estimate").y;
+  EXPECT_EQ(y.size(), 9U);
+  EXPECT_TRUE(std::isnan(y[5]));
+}
+
+TEST(RunReport, StatisticsLeaveOutTheSettlingTime) {
+  RunLabels labels = kLabels;
+  labels.statistics_from_s = 50;
+  RunReport report(labels, Mounting{});
+  for (int t = 0; t < 100; ++t) {
+    Epoch epoch;
+    epoch.t_ns = nanoseconds(t);
+    report.epoch(epoch);
+    ReferenceError error;
+    error.t_ns = epoch.t_ns;
+    error.position_n = Eigen::Vector3d::Constant(t < 50 ? 10 : 0.02);
+    report.reference_error(epoch, error);
+  }
+  const std::string note = figure_of(report.page(), "position_error").panels[0].note;
+  EXPECT_NE(note.find("RMS 0.0200 m"), std::string::npos) << note;
+  EXPECT_NE(note.find("from 50.0 s on"), std::string::npos) << note;
+}
+
+TEST(RunReport, LongRunsTakeBoundedRoom) {
+  RunReport report(kLabels, Mounting{});
+  for (int i = 0; i < 60000; ++i) {
+    Epoch epoch;
+    epoch.t_ns = nanoseconds(0.1 * i);
+    epoch.velocity_n.x() = i == 45678 ? 99 : std::sin(0.01 * i);
+    report.epoch(epoch);
+  }
+  const Figure velocity = figure_of(report.page(), "velocity");
+  const std::vector<double>& north = series_of(velocity.panels[0], "estimate").y;
+  EXPECT_LE(north.size(), 6000U);
+  EXPECT_EQ(*std::max_element(north.begin(), north.end()), 99) << "no peak is lost";
+}
+
+TEST(RunReport, SurvivesNumbersThatAreNotFinite) {
+  RunReport report(kLabels, Mounting{});
+  for (int t = 0; t < 20; ++t) {
+    Epoch epoch;
+    epoch.t_ns = nanoseconds(t);
+    if (t == 10) {
+      epoch.velocity_n.setConstant(std::numeric_limits<double>::quiet_NaN());
+      epoch.covariance.setConstant(std::numeric_limits<double>::infinity());
+    }
+    report.epoch(epoch);
+  }
+  const ReportPage page = report.page();
+  Renderer renderer;
+  for (const Section& section : page.sections) {
+    for (const Figure& figure : section.figures) {
+      EXPECT_GT(renderer.png(from_text(to_text(figure), figure.name)).size(), 1000U);
+    }
+  }
+}
+
+TEST(RunReport, WritesAWholeFolderThatRedrawsToTheSameBytes) {
+  namespace fs = std::filesystem;
+  const fs::path folder = fs::path(::testing::TempDir()) / "foucault_run_report_test";
+  fs::remove_all(folder);
+  RunReport report(kLabels, Mounting{});
+  fill_demo({}, report);
+  report.write(folder);
+  const auto content = [&](const char* name) {
+    std::ifstream file(folder / name, std::ios::binary);
+    std::ostringstream text;
+    text << file.rdbuf();
+    return text.str();
+  };
+  const std::string html = content("index.html");
+  EXPECT_EQ(html.find("://"), std::string::npos);
+  EXPECT_NE(html.find("Figure 17."), std::string::npos);
+  const std::string header = content("position_error.csv").substr(0, 200);
+  EXPECT_EQ(header.rfind("time_since_start_s,north_error_3_sigma_lower_m,"
+                         "north_error_3_sigma_upper_m,north_error_m,",
+                         0),
+            0U)
+      << header;
+  const std::string png = content("position_error.png");
+  redraw_report(folder);
+  EXPECT_EQ(content("position_error.png"), png);
+  EXPECT_EQ(content("index.html"), html);
+  if (std::getenv("FOUCAULT_KEEP_REPORT") == nullptr) fs::remove_all(folder);
+}
+
+}  // namespace
+}  // namespace foucault::content

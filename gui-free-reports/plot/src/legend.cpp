@@ -1,0 +1,135 @@
+#include "legend.h"
+
+#include <algorithm>
+#include <set>
+
+namespace foucault::plot {
+namespace {
+
+constexpr double kPoints = 9.5;
+constexpr double kRow = 5.0 * kPixelsPerMillimetre;
+constexpr double kSample = 5.5 * kPixelsPerMillimetre;
+constexpr double kMarkerSample = 3 * kPixelsPerMillimetre;
+constexpr double kGap = 1.5 * kPixelsPerMillimetre;
+constexpr double kBetween = 5.0 * kPixelsPerMillimetre;
+constexpr double kPatchHeight = 2.6 * kPixelsPerMillimetre;
+
+LegendEntry::Sample sample_of(Mark mark) {
+  if (mark == Mark::points) return LegendEntry::Sample::marker;
+  if (mark == Mark::band || mark == Mark::bars) return LegendEntry::Sample::patch;
+  return LegendEntry::Sample::line;
+}
+
+std::vector<LegendEntry> category_entries(const Series& series) {
+  const std::set<double> used(series.category.begin(), series.category.end());
+  std::vector<LegendEntry> entries;
+  for (size_t i = 0; i < series.categories.size(); ++i) {
+    if (used.count(static_cast<double>(i)) == 0) continue;
+    const Category& category = series.categories[i];
+    entries.push_back({category.label, sample_of(series.mark), category.ink, series.shape,
+                       series.size, series.opacity, series.dashed});
+  }
+  return entries;
+}
+
+bool same(const LegendEntry& a, const LegendEntry& b) {
+  return a.label == b.label && a.sample == b.sample && a.ink == b.ink;
+}
+
+bool has_data(const Series& series) { return !series.x.empty(); }
+
+double sample_width(const LegendEntry& entry) {
+  return entry.sample == LegendEntry::Sample::marker ? kMarkerSample : kSample;
+}
+
+/// One line, or two dashes.
+std::vector<Polyline> line_sample(const LegendEntry& entry, double x, double middle) {
+  const double left = x + entry.size;
+  const double right = x + kSample - entry.size;
+  if (!entry.dashed) return {{{left, middle}, {right, middle}}};
+  const double gap = 0.14 * kSample;
+  return {{{left, middle}, {x + kSample / 2 - gap, middle}},
+          {{x + kSample / 2 + gap, middle}, {right, middle}}};
+}
+
+void draw_sample(Canvas& canvas, const LegendEntry& entry, double x, double middle) {
+  const cv::Rect everywhere({}, canvas.image().size());
+  const Rgb colour = rgb(entry.ink);
+  const cv::Point2d centre(x + kMarkerSample / 2, middle);
+  switch (entry.sample) {
+    case LegendEntry::Sample::line:
+      return canvas.polylines(line_sample(entry, x, middle),
+                              {colour, std::max(1.6, entry.size) * kPixelsPerPoint,
+                               std::max(entry.opacity, 0.5), false},
+                              everywhere);
+    case LegendEntry::Sample::marker:
+      return canvas.markers({centre}, entry.shape, std::max(5.5, entry.size) * kPixelsPerPoint,
+                            colour, 1, everywhere);
+    case LegendEntry::Sample::patch:
+      return canvas.box(
+          cv::Rect(int(x), int(middle - kPatchHeight / 2), int(kSample), int(kPatchHeight)), colour,
+          entry.opacity);
+  }
+}
+
+}  // namespace
+
+std::vector<LegendEntry> legend_entries(const Panel& panel) {
+  std::vector<LegendEntry> entries;
+  for (const Series& series : panel.series) {
+    if (!series.in_legend || !has_data(series)) continue;
+    if (!series.categories.empty()) {
+      add_missing(category_entries(series), entries);
+    } else if (!series.label.empty()) {
+      add_missing({{series.label, sample_of(series.mark), series.ink, series.shape, series.size,
+                    series.opacity, series.dashed}},
+                  entries);
+    }
+  }
+  for (const Shade& shade : panel.shades) {
+    if (shade.label.empty()) continue;
+    add_missing(
+        {{shade.label, LegendEntry::Sample::patch, shade.ink, Shape::square, 1, 0.25, false}},
+        entries);
+  }
+  return entries;
+}
+
+void add_missing(const std::vector<LegendEntry>& more, std::vector<LegendEntry>& entries) {
+  for (const LegendEntry& entry : more) {
+    const bool known = std::any_of(entries.begin(), entries.end(),
+                                   [&](const LegendEntry& e) { return same(e, entry); });
+    if (!known) entries.push_back(entry);
+  }
+}
+
+Legend::Legend(std::vector<LegendEntry> entries, double width_px, Typesetter& typesetter) {
+  double x = 0;
+  for (LegendEntry& entry : entries) {
+    const double width = sample_width(entry) + kGap + typesetter.width(entry.label, kPoints);
+    if (rows_ == 0) rows_ = 1;
+    if (x > 0 && x + width > width_px) {
+      x = 0;
+      ++rows_;
+    }
+    width_ = std::max(width_, x + width);
+    placed_.push_back({std::move(entry), x, rows_ - 1});
+    x += width + kBetween;
+  }
+}
+
+double Legend::height() const { return rows_ * kRow; }
+
+double Legend::width() const { return width_; }
+
+void Legend::draw(Canvas& canvas, cv::Point2d top_left) const {
+  for (const Placed& placed : placed_) {
+    const double x = top_left.x + placed.x;
+    const double middle = top_left.y + (placed.row + 0.5) * kRow;
+    draw_sample(canvas, placed.entry, x, middle);
+    canvas.text(placed.entry.label, {x + sample_width(placed.entry) + kGap, middle},
+                {kPoints, rgb(Ink::black), AlignX::left, AlignY::middle});
+  }
+}
+
+}  // namespace foucault::plot

@@ -1,0 +1,11 @@
+#pragma once
+
+#include "canvas.h"
+#include "layout.h"
+
+namespace foucault::plot {
+
+/// Draws a panel: shades, heat map, grid, series, lines, axes and texts.
+void paint_panel(const PlacedPanel& placed, Canvas& canvas);
+
+}  // namespace foucault::plot
