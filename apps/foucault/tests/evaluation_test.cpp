@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "evaluation_job.h"
 #include "evaluation_output.h"
-#include "evaluation_report.h"
 #include "foucault/core/error.h"
-#include "simulation_job.h"
+#include "jobs/evaluation_job.h"
+#include "jobs/simulation_job.h"
+#include "pages/evaluation_page.h"
 #include "support/table.h"
 #include "support/test_folder.h"
 

@@ -2,7 +2,7 @@
 
 #include "foucault/core/so3.h"
 
-namespace foucault {
+namespace foucault::laboratory {
 
 using Eigen::Vector3d;
 
@@ -65,4 +65,4 @@ NodeState AblatedIntegrator::state() const {
   return x;
 }
 
-}  // namespace foucault
+}  // namespace foucault::laboratory

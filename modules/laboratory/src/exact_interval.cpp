@@ -7,7 +7,7 @@
 #include "foucault/geodesy/wgs84.h"
 #include "foucault/simulation/imu_simulator.h"
 
-namespace foucault {
+namespace foucault::laboratory {
 
 NodeState true_state(const Trajectory& trajectory, const LocalFrame& frame, double t) {
   const Motion motion = trajectory.at(t);
@@ -53,4 +53,4 @@ std::vector<ImuIncrement> ExactIncrements::at(double rate_hz) const {
   return sums;
 }
 
-}  // namespace foucault
+}  // namespace foucault::laboratory

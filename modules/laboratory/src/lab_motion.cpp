@@ -2,7 +2,7 @@
 
 #include "foucault/core/error.h"
 
-namespace foucault {
+namespace foucault::laboratory {
 namespace {
 
 LabMotion motion(const char* name, const char* title, const char* scenario, double first_start_s,
@@ -58,4 +58,4 @@ LabMotion lab_motion(const std::string& name) {
   throw UsageError("motion '" + name + "' is unknown; choose one of " + known);
 }
 
-}  // namespace foucault
+}  // namespace foucault::laboratory

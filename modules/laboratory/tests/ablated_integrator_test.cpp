@@ -10,7 +10,7 @@
 #include "foucault/laboratory/preintegration_study.h"
 #include "foucault/preintegration/preintegrator.h"
 
-namespace foucault {
+namespace foucault::laboratory {
 namespace {
 
 using Eigen::Vector3d;
@@ -183,4 +183,4 @@ TEST(ExactIncrements, OfEveryRateHaveOneSum) {
 }
 
 }  // namespace
-}  // namespace foucault
+}  // namespace foucault::laboratory

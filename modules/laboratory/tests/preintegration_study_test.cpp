@@ -7,7 +7,7 @@
 
 #include "foucault/core/error.h"
 
-namespace foucault {
+namespace foucault::laboratory {
 namespace {
 
 constexpr double kRate = 200;  // [Hz]
@@ -107,4 +107,4 @@ TEST(PreintegrationStudy, RefusesWhatDoesNotFit) {
 }
 
 }  // namespace
-}  // namespace foucault
+}  // namespace foucault::laboratory

@@ -6,7 +6,7 @@
 #include "foucault/geodesy/local_frame.h"
 #include "foucault/preintegration/motion.h"
 
-namespace foucault {
+namespace foucault::laboratory {
 
 /// Gravity along an interval.
 enum class GravityAlong {
@@ -64,4 +64,4 @@ class AblatedIntegrator {
   ImuIncrement previous_;
 };
 
-}  // namespace foucault
+}  // namespace foucault::laboratory

@@ -10,7 +10,7 @@
 
 /// A piece of an exact motion as a perfect IMU (axes b = v, no noise, no bias) sees it.
 /// Stamps count from the start of the trajectory.
-namespace foucault {
+namespace foucault::laboratory {
 
 /// True state at t [s], in the w of `frame`. Good to 1 nm, the rounding of ECEF metres.
 NodeState true_state(const Trajectory& trajectory, const LocalFrame& frame, double t);
@@ -32,4 +32,4 @@ class ExactIncrements {
   std::vector<ImuIncrement> base_;
 };
 
-}  // namespace foucault
+}  // namespace foucault::laboratory

@@ -5,7 +5,7 @@
 
 #include "foucault/simulation/scenario.h"
 
-namespace foucault {
+namespace foucault::laboratory {
 
 /// A kind of motion that is integrated, and the intervals of the trip that are.
 struct LabMotion {
@@ -30,4 +30,4 @@ std::vector<std::string> lab_motion_names();
 /// Throws UsageError naming the known ones.
 LabMotion lab_motion(const std::string& name);
 
-}  // namespace foucault
+}  // namespace foucault::laboratory

@@ -8,7 +8,7 @@
 #include "foucault/laboratory/exact_interval.h"
 #include "foucault/laboratory/lab_motion.h"
 
-namespace foucault {
+namespace foucault::laboratory {
 
 /// What a study of preintegration goes through.
 struct StudyPlan {
@@ -100,4 +100,4 @@ class PreintegrationStudy {
   Trajectory trajectory_;
 };
 
-}  // namespace foucault
+}  // namespace foucault::laboratory
