@@ -2,46 +2,30 @@
 
 #include <fmt/format.h>
 
+#include <cstddef>
 #include <numeric>
 
 namespace foucault::app {
 namespace {
 
-const char* stage_note(Stage stage) {
-  switch (stage) {
-    case Stage::start:
-      return "the program and its libraries, before the run";
-    case Stage::read:
-      return "log to measurements, decompression included";
-    case Stage::align:
-      return "initial attitude";
-    case Stage::mechanize:
-      return "strapdown mechanization, every IMU sample";
-    case Stage::preintegrate:
-      return "preintegration with covariance and Jacobians, every IMU sample";
-    case Stage::propagate:
-      return "mechanization and preintegration, every IMU sample";
-    case Stage::update:
-      return "fixes into the filter";
-    case Stage::solve:
-      return "optimization";
-    case Stage::marginalize:
-      return "elimination along the chain";
-    case Stage::covariance:
-      return "propagation and marginal covariances";
-    case Stage::smooth:
-      return "backward pass";
-    case Stage::statistics:
-      return "metrics, errors against a reference";
-    case Stage::write:
-      return "solution files";
-    case Stage::draw:
-      return "the report and its figures";
-    case Stage::other:
-      return "";
-  }
-  return "";
-}
+/// In the order of Stage.
+constexpr const char* kNotes[kStages] = {
+    "the program and its libraries, before the run",
+    "log to measurements, decompression included",
+    "initial attitude",
+    "strapdown mechanization, every IMU sample",
+    "preintegration with covariance and Jacobians, every IMU sample",
+    "mechanization and preintegration, every IMU sample",
+    "fixes into the filter",
+    "optimization",
+    "elimination along the chain",
+    "propagation and marginal covariances",
+    "backward pass",
+    "metrics, errors against a reference",
+    "solution files",
+    "the report and its figures",
+    "",
+};
 
 }  // namespace
 
@@ -56,7 +40,7 @@ std::vector<std::string> profile_lines(const std::vector<StageTime>& profile) {
   for (const StageTime& time : profile) {
     lines.push_back(fmt::format("{:<10} {:<12} {:7.3f} s {:5.1f} %  {}", "profile",
                                 stage_name(time.stage), time.seconds, 100 * time.seconds / total,
-                                stage_note(time.stage)));
+                                kNotes[static_cast<std::size_t>(time.stage)]));
   }
   if (!lines.empty()) {
     lines.push_back(fmt::format("{:<10} {:<12} {:7.3f} s", "profile", "total", total));

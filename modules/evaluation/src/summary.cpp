@@ -6,6 +6,7 @@
 #include <set>
 #include <utility>
 
+#include "count_distinct.h"
 #include "foucault/core/error.h"
 #include "foucault/core/time.h"
 
@@ -20,13 +21,6 @@ std::vector<std::string> methods_of(const std::vector<ExperimentResult>& results
     }
   }
   return methods;
-}
-
-std::size_t count_distinct(const std::vector<ExperimentResult>& results,
-                           std::string ExperimentResult::*member) {
-  std::set<std::string> names;
-  for (const ExperimentResult& result : results) names.insert(result.*member);
-  return names.size();
 }
 
 void require_outages(const std::vector<MethodOutages>& overall,
