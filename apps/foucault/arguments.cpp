@@ -2,12 +2,48 @@
 
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <cmath>
 #include <sstream>
+#include <utility>
 
+#include "command.h"
 #include "foucault/core/error.h"
 
 namespace foucault::app {
+
+void add_help_text(CLI::App& app, const std::string& flag, const std::string& description,
+                   std::function<std::string()> text) {
+  app.add_flag_callback(
+         flag, [text = std::move(text)] { throw HelpText(text()); }, description)
+      ->trigger_on_parse();
+}
+
+void add_config_options(CLI::App& app, ConfigArguments& arguments,
+                        std::function<std::string()> help) {
+  app.add_option("--config", arguments.file, "Configuration, YAML");
+  app.add_option("--set", arguments.assignments, "One key of the configuration; may be repeated")
+      ->type_name("KEY=VALUE")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  add_help_text(app, "--help-config",
+                "List every key of the configuration, with default and meaning", std::move(help));
+}
+
+void add_jobs_option(CLI::App& app, int& jobs, const std::string& what) {
+  app.add_option("--jobs", jobs, what + " at the same time")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+}
+
+void add_no_report_flag(CLI::App& app, bool& no_report) {
+  app.add_flag("--no-report", no_report, "Draw no figures");
+}
+
+void apply(const ConfigArguments& arguments, Configurable& target) {
+  if (!arguments.file.empty()) load_config(arguments.file, target);
+  for (const std::string& assignment : arguments.assignments) set_config(assignment, target);
+}
 
 Eigen::Vector3d parse_vector3(const std::string& option, const std::string& text) {
   std::istringstream stream(text);

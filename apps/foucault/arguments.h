@@ -1,9 +1,41 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <string>
+#include <vector>
 
+#include "foucault/core/config.h"
+
+namespace CLI {
+class App;
+}
+
+/// Options that several subcommands have.
 namespace foucault::app {
+
+/// --config and --set of a subcommand.
+struct ConfigArguments {
+  std::string file;
+  std::vector<std::string> assignments;
+};
+
+/// Adds --config FILE, --set KEY=VALUE (repeated) and --help-config, which prints `help()`.
+void add_config_options(CLI::App& app, ConfigArguments& arguments,
+                        std::function<std::string()> help);
+
+/// Adds a flag that prints `text()` and ends the program.
+void add_help_text(CLI::App& app, const std::string& flag, const std::string& description,
+                   std::function<std::string()> text);
+
+/// Adds --jobs N.
+void add_jobs_option(CLI::App& app, int& jobs, const std::string& what = "Runs");
+
+/// Adds --no-report.
+void add_no_report_flag(CLI::App& app, bool& no_report);
+
+/// The file first, then the assignments in their order. Throws DataError, UsageError.
+void apply(const ConfigArguments& arguments, Configurable& target);
 
 /// `X,Y,Z` as given on the command line. Throws UsageError naming `option`.
 Eigen::Vector3d parse_vector3(const std::string& option, const std::string& text);

@@ -1,11 +1,15 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "console.h"
+
+namespace CLI {
+class App;
+}
 
 namespace foucault::app {
 
@@ -40,10 +44,9 @@ std::function<void(Call&)> declare_lab(CLI::App& app);
 std::function<void(Call&)> declare_report(CLI::App& app);
 
 /// Text that was asked for instead of work (--help-config): print it, end with 0.
-class HelpText : public CLI::Success {
+class HelpText : public std::runtime_error {
  public:
-  explicit HelpText(std::string text)
-      : CLI::Success("HelpText", std::move(text), CLI::ExitCodes::Success) {}
+  using std::runtime_error::runtime_error;
 };
 
 }  // namespace foucault::app

@@ -43,6 +43,10 @@ void Console::say(const std::string& line) {
   std::fflush(stdout);
 }
 
+void Console::say(const std::vector<std::string>& lines) {
+  for (const std::string& line : lines) say(line);
+}
+
 void Console::warn(const std::string& text) {
   if (!warned_.insert(text).second) return;
   clear_progress();

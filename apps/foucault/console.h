@@ -4,6 +4,7 @@
 #include <functional>
 #include <set>
 #include <string>
+#include <vector>
 
 namespace foucault::app {
 
@@ -18,6 +19,7 @@ class Console {
 
   /// A line of the result.
   void say(const std::string& line);
+  void say(const std::vector<std::string>& lines);
 
   /// `foucault: warning: <text>`, once for each text.
   void warn(const std::string& text);

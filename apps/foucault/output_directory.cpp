@@ -229,4 +229,13 @@ void OutputDirectory::replace_entries() {
   }
 }
 
+std::vector<std::string> written_lines(const std::string& target, bool with_report) {
+  std::vector<std::string> lines{fmt::format("{:<10} {}", "written", target)};
+  if (with_report) {
+    const fs::path page = fs::path(target) / "report" / "index.html";
+    lines.push_back(fmt::format("{:<10} {}", "report", page.string()));
+  }
+  return lines;
+}
+
 }  // namespace foucault::app

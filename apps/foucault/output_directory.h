@@ -41,4 +41,7 @@ class OutputDirectory {
   std::unique_ptr<HeldFolder> held_;  ///< the staging folder
 };
 
+/// Where the results are, for the user.
+std::vector<std::string> written_lines(const std::string& target, bool with_report);
+
 }  // namespace foucault::app

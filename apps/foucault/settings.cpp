@@ -28,4 +28,9 @@ void Settings::fields(ConfigFields& f) {
   f.section("output", output, "what is written");
 }
 
+std::string settings_help() {
+  Settings settings;
+  return describe_config(settings);
+}
+
 }  // namespace foucault::app

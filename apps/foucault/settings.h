@@ -44,4 +44,7 @@ class Settings : public Configurable {
   void fields(ConfigFields& f) override;
 };
 
+/// Every key of Settings, for --help-config.
+std::string settings_help();
+
 }  // namespace foucault::app

@@ -7,11 +7,13 @@
 #include <string>
 #include <vector>
 
-#include "fault_study.h"
+#include "jobs/laboratory_job.h"
 #include "support/test_folder.h"
 
 namespace foucault::app {
 namespace {
+
+using namespace laboratory;
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;

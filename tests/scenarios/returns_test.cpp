@@ -8,14 +8,15 @@
 #include <string>
 #include <vector>
 
-#include "fault_study.h"
 #include "foucault/simulation/simulated_source.h"
+#include "jobs/laboratory_job.h"
 #include "methods.h"
-#include "return_study.h"
 #include "support/test_folder.h"
 
 namespace foucault::app {
 namespace {
+
+using namespace laboratory;
 
 using ::testing::HasSubstr;
 

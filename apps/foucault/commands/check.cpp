@@ -1,10 +1,11 @@
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <memory>
 
+#include "arguments.h"
 #include "command.h"
-#include "config_arguments.h"
 #include "foucault/core/error.h"
 #include "foucault/diagnosis/log_check.h"
 #include "foucault/rawlog/rawlog_source.h"
@@ -12,11 +13,6 @@
 
 namespace foucault::app {
 namespace {
-
-std::string config_help() {
-  Settings settings;
-  return describe_config(settings);
-}
 
 const char* name_of(Severity severity) {
   switch (severity) {
@@ -69,7 +65,7 @@ std::function<void(Call&)> declare_check(CLI::App& app) {
   };
   const auto options = std::make_shared<Options>();
   app.add_option("LOG", options->log, "Rawlog to judge")->required();
-  add_config_options(app, options->config, config_help);
+  add_config_options(app, options->config, settings_help);
   app.footer(
       "\nWhat is looked at: rates and holes, overlap, sigmas of fixes, lever arm, units and axes,\n"
       "the time offset between IMU and GNSS, noise and bias of the IMU at rest against imu.*.\n"

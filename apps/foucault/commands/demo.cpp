@@ -1,20 +1,20 @@
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <memory>
 
+#include "arguments.h"
 #include "command.h"
-#include "demo_experiment.h"
-#include "evaluation_job.h"
-#include "evaluation_output.h"
-#include "evaluation_report.h"
 #include "foucault/evaluation/task_pool.h"
-#include "foucault/page/report_page.h"
+#include "jobs/demo_job.h"
 #include "output_directory.h"
-#include "run_job.h"
+#include "version.h"
 
 namespace foucault::app {
 namespace {
+
+using laboratory::PaperExperiment;
 
 struct DemoOptions {
   bool full = false;
@@ -22,29 +22,22 @@ struct DemoOptions {
   std::string out = "foucault-demo";
 };
 
-DemoExperiment experiment_of(const DemoOptions& options) {
+PaperExperiment experiment_of(const DemoOptions& options) {
   if (options.full) return {{2325, 1617, 2333}};
   return {{1617}};
-}
-
-void say_all(const std::vector<std::string>& lines, Console& console) {
-  for (const std::string& line : lines) console.say(line);
 }
 
 void evaluate_into(const std::vector<EvaluationCase>& cases, const EvaluationLabels& labels,
                    int jobs, const std::filesystem::path& folder, Console& console) {
   const EvaluationSummary summary(evaluate(cases, jobs, console));
   std::filesystem::create_directories(folder);
-  write_evaluation(summary, labels, folder);
-  console.progress("drawing", 0);
-  page::write_report(content::evaluation_page(evaluation_report(summary, labels)),
-                     (folder / "report").string());
+  write_evaluation(summary, labels, true, folder, console);
   console.say("");
   console.say(labels.title);
-  say_all(evaluation_lines(summary), console);
+  console.say(evaluation_lines(summary));
 }
 
-void main_job(const DemoExperiment& experiment, const std::filesystem::path& recordings,
+void main_job(const PaperExperiment& experiment, const std::filesystem::path& recordings,
               const std::filesystem::path& folder, Call& call) {
   RunJob job = demo_run(experiment, recordings);
   job.out = folder.string();
@@ -63,25 +56,25 @@ void run_demo(const DemoOptions& options, Call& call) {
   OutputDirectory directory(options.out);
   const std::filesystem::path folder = directory.staging();
   const std::filesystem::path recordings = folder / "recordings";
-  const DemoExperiment experiment = experiment_of(options);
+  const PaperExperiment experiment = experiment_of(options);
 
   call.console.say(fmt::format("simulating {} recordings: {} trip{} with {} IMUs",
-                               experiment.trips_s.size() * demo_imus().size(),
+                               experiment.trips_s.size() * laboratory::paper_imus().size(),
                                experiment.trips_s.size(), experiment.trips_s.size() == 1 ? "" : "s",
-                               demo_imus().size()));
+                               laboratory::paper_imus().size()));
   write_demo_recordings(experiment, recordings, call.console);
   main_job(experiment, recordings, folder / "trip", call);
 
   EvaluationLabels labels;
-  labels.command_line = call.command_line;
+  labels.origin = {call.command_line, "", kVersion};
   labels.title = "The paper's experiment, noise as simulated";
-  labels.remarks = remarks_as_simulated();
-  evaluate_into(cases_as_simulated(experiment, recordings), labels, options.jobs, folder,
-                call.console);
+  labels.remarks = laboratory::remarks_as_simulated();
+  evaluate_into(evaluation_cases(laboratory::cases_as_simulated(experiment), recordings), labels,
+                options.jobs, folder, call.console);
   labels.title = "The paper's experiment, noise tuned for each method";
-  labels.remarks = remarks_tuned();
-  evaluate_into(cases_tuned(experiment, recordings), labels, options.jobs, folder / "tuned",
-                call.console);
+  labels.remarks = laboratory::remarks_tuned();
+  evaluate_into(evaluation_cases(laboratory::cases_tuned(experiment), recordings), labels,
+                options.jobs, folder / "tuned", call.console);
   directory.commit();
 
   const std::filesystem::path out = options.out;
@@ -96,9 +89,7 @@ void run_demo(const DemoOptions& options, Call& call) {
 std::function<void(Call&)> declare_demo(CLI::App& app) {
   const auto o = std::make_shared<DemoOptions>();
   app.add_flag("--full", o->full, "The paper's three trips, 2325, 1617 and 2333 s, instead of one");
-  app.add_option("--jobs", o->jobs, "Runs at the same time")
-      ->check(CLI::Range(1, 1024))
-      ->capture_default_str();
+  add_jobs_option(app, o->jobs);
   app.add_option("--out", o->out, "Folder for recordings, solution, tables and reports")
       ->capture_default_str();
   app.footer(

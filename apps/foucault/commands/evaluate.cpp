@@ -1,19 +1,18 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
-#include <filesystem>
+#include <CLI/CLI.hpp>
 #include <memory>
 #include <utility>
 
+#include "arguments.h"
 #include "command.h"
-#include "config_arguments.h"
-#include "evaluation_job.h"
-#include "evaluation_output.h"
-#include "evaluation_report.h"
 #include "foucault/core/error.h"
 #include "foucault/evaluation/task_pool.h"
-#include "foucault/page/report_page.h"
+#include "jobs/evaluation_job.h"
 #include "methods.h"
 #include "output_directory.h"
+#include "version.h"
 
 namespace foucault::app {
 namespace {
@@ -27,19 +26,13 @@ struct EvaluateOptions {
   bool no_report = false;
 };
 
-std::string config_help() {
-  Settings settings;
-  return describe_config(settings);
-}
-
 EvaluationLabels labels(Settings settings, const std::string& command_line) {
   EvaluationLabels labels;
   labels.remarks = {
       "Fixes were withheld from the methods for a while, again and again. Drift is the distance "
       "between estimate and truth meanwhile; the tables and bars take the largest of each outage, "
       "as the paper does."};
-  labels.command_line = command_line;
-  labels.config = dump_config(settings);
+  labels.origin = {command_line, dump_config(settings), kVersion};
   return labels;
 }
 
@@ -50,20 +43,11 @@ void evaluate_logs(const EvaluateOptions& options, Call& call) {
   OutputDirectory directory(options.out);
   Evaluation evaluation = evaluate_what_is_there(cases, options.jobs, call.console);
   const EvaluationSummary summary(std::move(evaluation.results));
-  const EvaluationLabels with = labels(settings, call.command_line);
-  write_evaluation(summary, with, directory.staging());
-  if (!options.no_report) {
-    call.console.progress("drawing", 0);
-    page::write_report(content::evaluation_page(evaluation_report(summary, with)),
-                       (directory.staging() / "report").string());
-  }
+  write_evaluation(summary, labels(settings, call.command_line), !options.no_report,
+                   directory.staging(), call.console);
   directory.commit();
-  for (const std::string& line : evaluation_lines(summary)) call.console.say(line);
-  call.console.say(fmt::format("{:<10} {}", "written", options.out));
-  if (!options.no_report) {
-    const std::filesystem::path page = std::filesystem::path(options.out) / "report" / "index.html";
-    call.console.say(fmt::format("{:<10} {}", "report", page.string()));
-  }
+  call.console.say(evaluation_lines(summary));
+  call.console.say(written_lines(options.out, !options.no_report));
   std::vector<std::string> lacking = evaluation.damages;
   lacking.insert(lacking.end(), evaluation.failures.begin(), evaluation.failures.end());
   if (!lacking.empty()) {
@@ -82,13 +66,11 @@ std::function<void(Call&)> declare_evaluate(CLI::App& app) {
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
       ->capture_default_str();
-  add_config_options(app, o->config, config_help);
-  app.add_option("--jobs", o->jobs, "Runs at the same time")
-      ->check(CLI::Range(1, 1024))
-      ->capture_default_str();
+  add_config_options(app, o->config, settings_help);
+  add_jobs_option(app, o->jobs);
   app.add_option("--out", o->out, "Folder for drift.csv, metrics.json, tables/, report/")
       ->required();
-  app.add_flag("--no-report", o->no_report, "Draw no figures");
+  add_no_report_flag(app, o->no_report);
   app.footer(
       "\nExamples:\n"
       "  foucault evaluate trip.rawlog --out trip-outages\n"

@@ -1,19 +1,19 @@
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <iterator>
 #include <memory>
 #include <optional>
 
 #include "arguments.h"
 #include "command.h"
-#include "config_arguments.h"
 #include "foucault/core/error.h"
 #include "foucault/core/time.h"
+#include "foucault/core/units.h"
 #include "foucault/rawlog/import_csv.h"
 #include "foucault/rawlog/import_i2nav.h"
 #include "foucault/rawlog/import_rtklib.h"
-#include "rawlog_summary.h"
-#include "units.h"
+#include "texts/rawlog_summary.h"
 
 namespace foucault::app {
 namespace {
@@ -22,7 +22,7 @@ using Action = std::function<void(Call&)>;
 
 std::string stream_line(const std::string& name, const ImportStream& s) {
   std::string line = fmt::format("{:<10} {} from {}, {} .. {} ({:.1f} s)", name, s.written, s.file,
-                                 format_utc(s.first_ns), format_utc(s.last_ns),
+                                 utc_text(s.first_ns), utc_text(s.last_ns),
                                  seconds_between(s.first_ns, s.last_ns));
   if (s.without_fix > 0) line += fmt::format(", {} rows without a fix", s.without_fix);
   return line;

@@ -1,11 +1,12 @@
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <memory>
 
 #include "command.h"
 #include "foucault/core/error.h"
 #include "foucault/rawlog/rawlog_info.h"
-#include "rawlog_summary.h"
+#include "texts/rawlog_summary.h"
 
 namespace foucault::app {
 

@@ -1,13 +1,14 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <CLI/CLI.hpp>
 #include <memory>
 
+#include "arguments.h"
 #include "command.h"
-#include "config_arguments.h"
 #include "foucault/core/error.h"
+#include "jobs/run_job.h"
 #include "methods.h"
-#include "run_job.h"
 
 namespace foucault::app {
 namespace {
@@ -18,11 +19,6 @@ std::string method_help() {
     help += fmt::format("\n  {}: {}", method.name, method.summary);
   }
   return help;
-}
-
-std::string config_help() {
-  Settings settings;
-  return describe_config(settings);
 }
 
 /// Also where the summary is not shown.
@@ -42,10 +38,10 @@ std::function<void(Call&)> declare_run(CLI::App& app) {
   const auto o = std::make_shared<Options>();
   app.add_option("LOG", o->job.log, "Rawlog to process")->required();
   app.add_option("--method", o->job.method, method_help())->capture_default_str();
-  add_config_options(app, o->config, config_help);
+  add_config_options(app, o->config, settings_help);
   app.add_option("--out", o->job.out, "Folder for solution.csv, .tum, .kml, metrics.json, report/")
       ->required();
-  app.add_flag("--no-report", o->no_report, "Draw no figures");
+  add_no_report_flag(app, o->no_report);
   app.add_flag("--profile", o->job.profile, "Say where the time went, stage by stage");
   app.footer(
       "\nExamples:\n"
@@ -59,7 +55,7 @@ std::function<void(Call&)> declare_run(CLI::App& app) {
     o->job.command_line = call.command_line;
     const RunResult result = run(o->job, call.console);
     warn_if_condemned(result.metrics.trust, call.console);
-    for (const std::string& line : summary_lines(result)) call.console.say(line);
+    call.console.say(summary_lines(result));
     if (result.damage) {
       throw DataError(fmt::format("{}; the results in '{}' are of what came before", *result.damage,
                                   result.out));

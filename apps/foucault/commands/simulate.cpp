@@ -1,20 +1,21 @@
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <memory>
 #include <optional>
 
+#include "arguments.h"
 #include "command.h"
-#include "config_arguments.h"
-#include "fault_cases.h"
-#include "simulation_job.h"
+#include "foucault/laboratory/fault_cases.h"
+#include "jobs/simulation_job.h"
 
 namespace foucault::app {
 namespace {
 
 std::string fault_help() {
-  std::string help =
-      fmt::format("What is wrong with it; faults of the middle begin at {:.0f} s:", kFaultStart);
-  for (const FaultCase& fault : fault_cases()) {
+  std::string help = fmt::format("What is wrong with it; faults of the middle begin at {:.0f} s:",
+                                 laboratory::kFaultStart);
+  for (const laboratory::FaultCase& fault : laboratory::fault_cases()) {
     help += fmt::format("\n  {}: {}", fault.name, fault.title);
   }
   return help;
@@ -27,7 +28,7 @@ std::function<void(Call&)> declare_simulate(CLI::App& app) {
     std::optional<std::string> imu;
     std::optional<double> duration;
     std::optional<int64_t> seed;
-    std::string fault = fault_cases().front().name;
+    std::string fault = laboratory::fault_cases().front().name;
     ConfigArguments config;
     std::string out;
   };
@@ -54,7 +55,7 @@ std::function<void(Call&)> declare_simulate(CLI::App& app) {
     if (o->duration) set_config(fmt::format("scenario.duration_s={}", *o->duration), settings);
     if (o->seed) set_config(fmt::format("scenario.seed={}", *o->seed), settings);
     const SimulationCounts counts =
-        write_simulation(settings, find_fault_case(o->fault), o->out, call.console);
+        write_simulation(settings, laboratory::find_fault_case(o->fault), o->out, call.console);
     call.console.say(
         fmt::format("{}: {:.1f} s of '{}' with {}, {} IMU samples, {} fixes, {} poses "
                     "of the truth",

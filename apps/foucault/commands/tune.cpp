@@ -1,18 +1,18 @@
+#include <CLI/CLI.hpp>
 #include <memory>
 
+#include "arguments.h"
 #include "command.h"
-#include "config_arguments.h"
 #include "foucault/evaluation/task_pool.h"
-#include "tune_job.h"
+#include "jobs/tune_job.h"
 
 namespace foucault::app {
 namespace {
 
 std::string config_help() {
-  TuneOptions options;
-  Settings settings;
+  tuning::TuneOptions options;
   return "Keys of the grid's file:\n" + describe_config(options) +
-         "base: and grid: take the keys of the configuration:\n" + describe_config(settings);
+         "base: and grid: take the keys of the configuration:\n" + settings_help();
 }
 
 }  // namespace
@@ -29,12 +29,10 @@ std::function<void(Call&)> declare_tune(CLI::App& app) {
   add_config_options(app, o->config, config_help);
   app.get_option("--config")->required()->description("The grid, YAML");
   app.get_option("--set")->description("One key of the base; may be repeated");
-  app.add_option("--jobs", o->job.threads, "Runs at the same time")
-      ->check(CLI::Range(1, 1024))
-      ->capture_default_str();
+  add_jobs_option(app, o->job.threads);
   app.add_option("--out", o->job.out, "Folder for points.csv, results.csv, best.yaml, report/")
       ->required();
-  app.add_flag("--no-report", o->no_report, "Draw no figures");
+  add_no_report_flag(app, o->no_report);
   app.footer(
       "\nExample of a grid:\n"
       "  base: {imu: {preset: ADIS16465}}      # any keys of the configuration\n"
@@ -46,10 +44,10 @@ std::function<void(Call&)> declare_tune(CLI::App& app) {
       "  search: coarse_to_fine                # full\n"
       "Finished points are kept in DIR/points.csv: after a kill the same command goes on there.");
   return [o](Call& call) {
-    o->job.config = load_tune_config(o->config.file, o->config.assignments);
+    load_grid(o->config.file, o->config.assignments, o->job);
     o->job.report = !o->no_report;
     o->job.command_line = call.command_line;
-    for (const std::string& line : tune(o->job, call.console)) call.console.say(line);
+    call.console.say(tune(o->job, call.console));
   };
 }
 

@@ -4,11 +4,10 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "evaluation_job.h"
-#include "evaluation_output.h"
-#include "evaluation_report.h"
 #include "foucault/core/error.h"
-#include "simulation_job.h"
+#include "jobs/evaluation_job.h"
+#include "jobs/simulation_job.h"
+#include "pages/evaluation_page.h"
 #include "support/table.h"
 #include "support/test_folder.h"
 
@@ -66,9 +65,9 @@ TEST_F(EvaluationTest, WritesWhatItFound) {
   const test::TestFolder out;
   const EvaluationSummary summary(results(2));
   EvaluationLabels labels;
-  labels.command_line = "foucault evaluate trip.rawlog";
-  labels.config = "imu: {preset: ADIS16465}\n";
-  write_evaluation(summary, labels, out.path());
+  labels.origin = {"foucault evaluate trip.rawlog", "imu: {preset: ADIS16465}\n", "1"};
+  Console console(true);
+  write_evaluation(summary, labels, false, out.path(), console);
 
   const auto json = nlohmann::json::parse(out.text("metrics.json"));
   for (const char* method : {"ekf", "rough"}) {
@@ -84,7 +83,7 @@ TEST_F(EvaluationTest, WritesWhatItFound) {
   }
   EXPECT_EQ(json["comparisons"][0]["base"], "ekf");
   EXPECT_EQ(json["comparisons"][0]["other"], "rough");
-  EXPECT_EQ(json["config"], labels.config);
+  EXPECT_EQ(json["config"], labels.origin.config);
   EXPECT_TRUE(json.contains("version"));
   EXPECT_TRUE(json["distances"].empty()) << "nothing is far from the start";
 
@@ -124,7 +123,7 @@ TEST_F(EvaluationTest, DriftByDistanceOfATripThatGoesFar) {
   EXPECT_EQ(outages, summary.overall()[0].entries.size());
   EXPECT_GT(profile.bins.back().bin.to_km, kFarKm);
 
-  write_evaluation(summary, {}, folder.path());
+  write_evaluation(summary, {}, false, folder.path(), console);
   const auto json = nlohmann::json::parse(folder.text("metrics.json"));
   const auto& first = json["distances"][0]["bins"][0];
   EXPECT_EQ(first["methods"]["ekf"]["horizontal_relative"]["value"], 0);

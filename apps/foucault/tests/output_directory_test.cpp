@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "foucault/core/error.h"
+#include "foucault/export/text_file.h"
 #include "support/test_folder.h"
-#include "text_file.h"
 
 namespace foucault::app {
 namespace {
@@ -16,7 +16,7 @@ TEST(OutputDirectory, LeavesNothingWithoutCommit) {
   const TestFolder folder;
   {
     const OutputDirectory out(folder / "new");
-    write_text_file(out.staging() / "a.txt", "half");
+    exports::write_text_file(out.staging() / "a.txt", "half");
   }
   EXPECT_EQ(folder.entries(), 0u);
 }
@@ -24,7 +24,7 @@ TEST(OutputDirectory, LeavesNothingWithoutCommit) {
 TEST(OutputDirectory, AppearsWithCommit) {
   const TestFolder folder;
   OutputDirectory out(folder / "deep/new/");
-  write_text_file(out.staging() / "a.txt", "whole");
+  exports::write_text_file(out.staging() / "a.txt", "whole");
   EXPECT_FALSE(fs::exists(folder / "deep/new"));
   out.commit();
   EXPECT_EQ(folder.text("deep/new/a.txt"), "whole");
@@ -45,7 +45,7 @@ class OverEarlierResults : public testing::Test {
 TEST_F(OverEarlierResults, TheyStayWithoutCommit) {
   {
     const OutputDirectory out(folder_ / "run");
-    write_text_file(out.staging() / "a.txt", "half");
+    exports::write_text_file(out.staging() / "a.txt", "half");
   }
   EXPECT_EQ(folder_.text("run/a.txt"), "old");
   EXPECT_TRUE(fs::exists(folder_ / "run/report/old.png"));
@@ -55,9 +55,9 @@ TEST_F(OverEarlierResults, TheyStayWithoutCommit) {
 TEST_F(OverEarlierResults, CommitReplacesWhatItWritesAndNothingElse) {
   {
     OutputDirectory out(folder_ / "run");
-    write_text_file(out.staging() / "a.txt", "new");
+    exports::write_text_file(out.staging() / "a.txt", "new");
     fs::create_directory(out.staging() / "report");
-    write_text_file(out.staging() / "report" / "new.png", "new");
+    exports::write_text_file(out.staging() / "report" / "new.png", "new");
     out.commit();
   }
   EXPECT_EQ(folder_.text("run/a.txt"), "new");
@@ -72,9 +72,9 @@ TEST_F(OverEarlierResults, AllAreKeptIfOneCannotBeReplaced) {
   fs::create_directory(folder_.path() / "run/z.txt");  // where a file is to come
   {
     OutputDirectory out(folder_ / "run");
-    write_text_file(out.staging() / "a.txt", "new");
+    exports::write_text_file(out.staging() / "a.txt", "new");
     fs::create_directory(out.staging() / "report");
-    write_text_file(out.staging() / "z.txt", "new");
+    exports::write_text_file(out.staging() / "z.txt", "new");
     EXPECT_THROW(out.commit(), DataError);
   }
   EXPECT_EQ(folder_.text("run/a.txt"), "old");
@@ -95,9 +95,9 @@ TEST_F(OverEarlierResults, AReportOfAnotherOriginIsNotReplaced) {
 TEST_F(OverEarlierResults, AFolderThatAppearedMeanwhileIsNotLost) {
   OutputDirectory first(folder_ / "new");
   OutputDirectory second(folder_ / "new");
-  write_text_file(first.staging() / "a.txt", "first");
-  write_text_file(first.staging() / "b.txt", "first");
-  write_text_file(second.staging() / "a.txt", "second");
+  exports::write_text_file(first.staging() / "a.txt", "first");
+  exports::write_text_file(first.staging() / "b.txt", "first");
+  exports::write_text_file(second.staging() / "a.txt", "second");
   first.commit();
   second.commit();
   EXPECT_EQ(folder_.text("new/a.txt"), "second");
@@ -126,7 +126,7 @@ TEST_F(OverEarlierResults, WhatWasLeftBehindIsClearedAwayButNotWhatIsInUse) {
 TEST(OutputDirectory, NoticesThatItsFolderWasRemoved) {
   const TestFolder folder;
   OutputDirectory out(folder / "new");
-  write_text_file(out.staging() / "a.txt", "whole");
+  exports::write_text_file(out.staging() / "a.txt", "whole");
   fs::remove_all(out.staging());
   fs::create_directory(out.staging());
   EXPECT_THROW(out.commit(), DataError);

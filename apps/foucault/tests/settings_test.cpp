@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "foucault/core/error.h"
+#include "jobs/simulation_job.h"
 #include "methods.h"
-#include "simulation_job.h"
 
 namespace foucault::app {
 namespace {

@@ -4,15 +4,15 @@
 #include <nlohmann/json.hpp>
 
 #include "foucault/core/error.h"
-#include "simulation_job.h"
+#include "jobs/simulation_job.h"
+#include "jobs/tune_job.h"
 #include "support/test_folder.h"
-#include "tune_job.h"
 
 namespace foucault::app {
 namespace {
 
-using testing::ElementsAre;
 using testing::HasSubstr;
+using tuning::MethodTuning;
 
 constexpr const char* kGrid = R"(# A comment with an umlaut: Gitter für rough
 base:
@@ -33,62 +33,18 @@ std::string with(std::string from, const std::string& to) {
   return yaml.replace(yaml.find(from), from.size(), to);
 }
 
-std::string refusal(const std::string& yaml, const std::vector<std::string>& set = {}) {
-  try {
-    load_tune_config_text(yaml, "grid.yaml", set);
-  } catch (const UsageError& error) {
-    return error.what();
-  }
-  return "";
-}
-
-TEST(TuneConfig, ReadsBaseGridAndOptions) {
-  const TuneConfig config = load_tune_config_text(kGrid, "grid.yaml", {"outages.length_s=15"});
-  EXPECT_EQ(config.base.outages.first_s, 100);
-  EXPECT_EQ(config.base.outages.length_s, 15);
-  ASSERT_EQ(config.grid.axes.size(), 2u);
-  EXPECT_EQ(config.grid.axes[0].key, "imu.arw_deg_sqrt_h");
-  EXPECT_THAT(config.grid.axes[0].values, ElementsAre("0.15", "0.6"));
-  EXPECT_THAT(config.grid.axes[1].values, ElementsAre("2", "20", "200"));
-  EXPECT_THAT(config.options.methods_to_tune(), ElementsAre("ekf"));
-  const Settings at = config.at({1, 2});
+TEST(LoadGrid, ValuesAreTriedOnTheSettings) {
+  TuneJob job;
+  load_grid_text(kGrid, "grid.yaml", {"outages.length_s=15"}, job);
+  EXPECT_EQ(job.base.outages.length_s, 15);
+  const Settings at = job.at({1, 2});
   EXPECT_EQ(*at.imu.arw_deg_sqrt_h, 0.6);
   EXPECT_EQ(*at.imu.gyro_bias_deg_h, 200);
   EXPECT_EQ(at.outages.first_s, 100);
-}
-
-TEST(TuneConfig, ErrorsNameTheLine) {
-  EXPECT_THAT(refusal(with("first_s: 100", "first: 100")),
-              HasSubstr("grid.yaml:5: outages.first: is not a key; did you mean outages.first_s"));
-  EXPECT_THAT(refusal(with("imu.arw_deg_sqrt_h:", "imu.arw:")), HasSubstr("grid.yaml:10: grid: "));
-  EXPECT_THAT(refusal(with("[0.6, 0.15]", "[0.6, -1]")),
-              HasSubstr("grid.yaml:10: grid: imu.arw_deg_sqrt_h: must be at least 0"));
-  EXPECT_THAT(refusal(with("[0.6, 0.15]", "[0.6, 0.6]")), HasSubstr("grid.yaml:10: "));
-  EXPECT_THAT(refusal(with("steps: 3", "step: 3")), HasSubstr("grid.yaml:11: grid: 'step'"));
-  EXPECT_THAT(refusal(with("from: 2", "from: -2")), HasSubstr("scale log needs"));
-  EXPECT_THAT(refusal(with("steps: 3", "steps: 1")), HasSubstr("steps is a whole number"));
-  EXPECT_THAT(refusal(with("method: ekf", "objectiv: vertical")),
-              HasSubstr("grid.yaml:12: objectiv: is not a key; did you mean objective"));
-  EXPECT_THAT(refusal(with("method: ekf", "method: kalman")), HasSubstr("unknown method"));
-  EXPECT_THAT(refusal(with("method: ekf", "")), HasSubstr("names no method"));
-  EXPECT_THAT(refusal("base: {}\nmethod: ekf\n"), HasSubstr("has no grid"));
-  EXPECT_THAT(refusal("{base: {}}"), HasSubstr("expects lines"));
-  EXPECT_THAT(refusal("grid: [\n"), HasSubstr("is not YAML"));
-  EXPECT_THAT(refusal(std::string(kGrid) + "base: {}\n"),
-              HasSubstr("grid.yaml:13: base: is given twice, first in line "));
-  EXPECT_THAT(refusal(with("imu.arw_deg_sqrt_h:", "outages.length_s:")),
-              HasSubstr("outages are the same for all points"));
-  EXPECT_EQ(refusal(kGrid), "");
-}
-
-TEST(TuneOptions, Objectives) {
-  TuneOptions options;
-  EXPECT_EQ(options.objective_of(3, 2), 3);
-  options.objective = "vertical";
-  EXPECT_EQ(options.objective_of(3, 2), 2);
-  options.objective = "weighted";
-  options.vertical_weight = 0.5;
-  EXPECT_EQ(options.objective_of(3, 2), 4);
+  EXPECT_THROW(load_grid_text(with("imu.arw_deg_sqrt_h", "imu.arw"), "grid.yaml", {}, job),
+               UsageError);
+  EXPECT_THROW(load_grid_text(with("method: ekf", "method: kalman"), "grid.yaml", {}, job),
+               UsageError);
 }
 
 /// A search of six points on a log of 200 s.
@@ -107,7 +63,7 @@ class TuneTest : public testing::Test {
   static TuneJob job(const std::string& out, const std::string& yaml = kGrid) {
     TuneJob job;
     job.logs = {*folder_ / "trip.rawlog"};
-    job.config = load_tune_config_text(yaml, "grid.yaml", {});
+    load_grid_text(yaml, "grid.yaml", {}, job);
     job.out = out;
     job.threads = 2;
     job.report = false;
@@ -154,7 +110,7 @@ TEST_F(TuneTest, WritesTheBestOfThePoints) {
   Settings best;
   load_config_text(out.text("a/best.yaml"), "best.yaml", best);
   EXPECT_EQ(best.imu.noise().gyro_noise_density,
-            job(out / "a").config.at(tunings[0].search.best).imu.noise().gyro_noise_density);
+            job(out / "a").at(tunings[0].search.best).imu.noise().gyro_noise_density);
   EXPECT_EQ(out.lines("a/heatmaps/ekf_imu_arw_deg_sqrt_h_imu_gyro_bias_deg_h.csv").size(), 7u);
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "foucault/core/time.h"
+#include "foucault/core/units.h"
 #include "foucault/evaluation/csv_line.h"
 
 namespace foucault::evaluation {
@@ -89,11 +90,6 @@ void append(std::vector<std::string>& row, const DriftValue& value) {
   row.push_back(fmt::format("{:.4f}", value.vertical));
 }
 
-/// Seconds in full, without the rounding of a double.
-std::string seconds_text(int64_t t_ns) {
-  return fmt::format("{}.{:09}", t_ns / kNanosecondsPerSecond, t_ns % kNanosecondsPerSecond);
-}
-
 /// Empty without a return; "inf" where the error did not come back.
 std::vector<std::string> return_cells(const std::optional<ReturnError>& error) {
   if (!error) return {"", "", ""};
@@ -109,9 +105,9 @@ std::vector<std::string> record_cells(const DriftRecord& record) {
                                record.method,
                                fmt::format("{}", record.shift_s),
                                fmt::format("{}", outage.index + 1),
-                               seconds_text(outage.begin_ns),
+                               units::format_stamp(outage.begin_ns),
                                fmt::format("{}", gps.week),
-                               seconds_text(gps.tow_ns),
+                               units::format_stamp(gps.tow_ns),
                                fmt::format("{}", seconds_between(outage.begin_ns, outage.end_ns))};
   append(row, record.drift.maximum);
   append(row, record.drift.end);
@@ -167,6 +163,16 @@ std::string to_plain_text(const TextTable& table) {
   add(table.header);
   for (const std::vector<std::string>& row : table.rows) add(row);
   return text;
+}
+
+std::vector<std::string> text_lines(const std::string& text) {
+  std::vector<std::string> lines;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    lines.push_back(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return lines;
 }
 
 TextTable drift_rms_table(const std::vector<MethodDrifts>& drifts, const std::string& imu_header) {

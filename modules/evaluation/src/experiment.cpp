@@ -8,6 +8,7 @@
 #include <tuple>
 #include <utility>
 
+#include "count_distinct.h"
 #include "foucault/core/error.h"
 #include "foucault/core/time.h"
 #include "foucault/evaluation/task_pool.h"
@@ -100,13 +101,6 @@ void keep_common(std::vector<MethodOutages>& outages) {
     std::sort(o.entries.begin(), o.entries.end(),
               [](const auto& a, const auto& b) { return key(a) < key(b); });
   }
-}
-
-std::size_t count_distinct(const std::vector<ExperimentResult>& results,
-                           std::string ExperimentResult::*member) {
-  std::set<std::string> names;
-  for (const ExperimentResult& result : results) names.insert(result.*member);
-  return names.size();
 }
 
 ExperimentResult without_results(const ExperimentRun& run) {

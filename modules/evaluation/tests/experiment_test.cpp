@@ -5,64 +5,26 @@
 
 #include <algorithm>
 
-#include "drifting_estimator.h"
 #include "foucault/core/error.h"
+#include "support/drifting_experiment.h"
 
 namespace foucault::evaluation {
 namespace {
 
-using test::DriftingEstimator;
-using test::RestSource;
 using testing::HasSubstr;
-
-OutageOptions outages() {
-  OutageOptions options;
-  options.first_s = 100;
-  options.length_s = 30;
-  options.period_s = 50;
-  return options;
-}
-
-/// Drifts of `scale` times 9 m in outages at 100 s, 150 s, ..., each shifted.
-ExperimentRun experiment_run(const std::string& recording, const std::string& method, double scale,
-                             double shift_s, double duration_s = 275) {
-  ExperimentRun run;
-  run.recording = recording;
-  run.imu = "none";
-  run.method = method;
-  run.shift_s = shift_s;
-  run.schedule = OutageSchedule(outages(), shift_s);
-  run.open = [duration_s] { return std::make_unique<RestSource>(duration_s, true); };
-  run.make_estimator = [scale](const Mounting&, Sink& sink) {
-    return std::make_unique<DriftingEstimator>(sink, scale);
-  };
-  return run;
-}
-
-/// Two recordings, two methods, two shifts.
-std::vector<ExperimentRun> some_runs() {
-  std::vector<ExperimentRun> runs;
-  for (const char* recording : {"b", "a"}) {
-    for (const double shift_s : {0.0, 25.0}) {
-      runs.push_back(experiment_run(recording, "good", 1, shift_s));
-      runs.push_back(experiment_run(recording, "bad", 2, shift_s));
-    }
-  }
-  return runs;
-}
 
 std::string records_csv(const std::vector<ExperimentResult>& results) {
   return to_csv(drift_record_table(drift_records(results), default_drift_marks_s()));
 }
 
 TEST(Experiment, ResultsDoNotDependOnTheNumberOfThreads) {
-  const std::string one = records_csv(run_experiments(some_runs(), 1));
-  EXPECT_EQ(records_csv(run_experiments(some_runs(), 2)), one);
-  EXPECT_EQ(records_csv(run_experiments(some_runs(), 8)), one);
+  const std::string one = records_csv(run_experiments(test::drifting_runs(), 1));
+  EXPECT_EQ(records_csv(run_experiments(test::drifting_runs(), 2)), one);
+  EXPECT_EQ(records_csv(run_experiments(test::drifting_runs(), 8)), one);
 }
 
 TEST(Experiment, TablesJoinRecordingsAndShifts) {
-  const std::vector<ExperimentResult> results = run_experiments(some_runs(), 2);
+  const std::vector<ExperimentResult> results = run_experiments(test::drifting_runs(), 2);
   const std::vector<MethodOutages> rows = table_rows(results);
   // 100, 150, 200 and 125, 175, 225 in each recording
   ASSERT_EQ(rows.size(), 6u);
@@ -78,7 +40,7 @@ TEST(Experiment, TablesJoinRecordingsAndShifts) {
 }
 
 TEST(Experiment, ImusAreRowsIfThereAreSeveral) {
-  std::vector<ExperimentRun> runs = some_runs();
+  std::vector<ExperimentRun> runs = test::drifting_runs();
   for (ExperimentRun& run : runs) run.imu = run.recording == "a" ? "IMU A" : "IMU B";
   const std::vector<ExperimentResult> results = run_experiments(runs, 2);
   const std::vector<MethodOutages> rows = table_rows(results);
@@ -89,7 +51,7 @@ TEST(Experiment, ImusAreRowsIfThereAreSeveral) {
 
 /// What one method misses is left out for the other, too, and counted.
 TEST(Experiment, OnlyCommonOutagesAreCompared) {
-  std::vector<ExperimentResult> results = run_experiments(some_runs(), 2);
+  std::vector<ExperimentResult> results = run_experiments(test::drifting_runs(), 2);
   results[1].run.drifts.erase(results[1].run.drifts.begin() + 1);
   const std::vector<MethodOutages> outages = group_outages(results, Grouping::all);
   ASSERT_EQ(outages.size(), 2u);
@@ -115,12 +77,12 @@ class FailingEstimator : public Estimator {
 /// It is left out in every recording and shift, and the others stay.
 TEST(Experiment, AMethodThatFailsOnceTakesNoOtherWithIt) {
   const std::string others = [] {
-    std::vector<ExperimentRun> runs = some_runs();
+    std::vector<ExperimentRun> runs = test::drifting_runs();
     const auto is_bad = [](const ExperimentRun& run) { return run.method == "bad"; };
     runs.erase(std::remove_if(runs.begin(), runs.end(), is_bad), runs.end());
     return records_csv(run_experiments(runs, 2));
   }();
-  std::vector<ExperimentRun> runs = some_runs();
+  std::vector<ExperimentRun> runs = test::drifting_runs();
   runs[1].make_estimator = [](const Mounting&, Sink&) {
     return std::make_unique<FailingEstimator>();
   };
@@ -132,9 +94,9 @@ TEST(Experiment, AMethodThatFailsOnceTakesNoOtherWithIt) {
 
 TEST(Experiment, AShortRecordingIsToldWhatToChange) {
   try {
-    run_experiments(
-        {experiment_run("short", "good", 1, 25, 120), experiment_run("short", "good", 1, 0, 120)},
-        2);
+    run_experiments({test::drifting_run("short", "good", 1, 25, 120),
+                     test::drifting_run("short", "good", 1, 0, 120)},
+                    2);
     FAIL();
   } catch (const DataError& error) {
     EXPECT_THAT(error.what(), HasSubstr("short: no outage fits into its 120 s of fixes"));
@@ -145,7 +107,7 @@ TEST(Experiment, AShortRecordingIsToldWhatToChange) {
 
 TEST(Experiment, AShiftMayLackOutages) {
   const std::vector<ExperimentResult> results = run_experiments(
-      {experiment_run("a", "good", 1, 25, 140), experiment_run("a", "good", 1, 0, 140)}, 1);
+      {test::drifting_run("a", "good", 1, 25, 140), test::drifting_run("a", "good", 1, 0, 140)}, 1);
   EXPECT_TRUE(results[0].run.drifts.empty());
   EXPECT_EQ(results[1].run.drifts.size(), 1u);
 }
@@ -153,7 +115,7 @@ TEST(Experiment, AShiftMayLackOutages) {
 TEST(Experiment, TrackKeepsErrorsAndProgressGoesOn) {
   double last = 0;
   const ExperimentResult result =
-      run_experiment(experiment_run("a", "good", 1, 0), [&](double part) { last = part; });
+      run_experiment(test::drifting_run("a", "good", 1, 0), [&](double part) { last = part; });
   EXPECT_GE(last, 1);
   ASSERT_FALSE(result.track.empty());
   double largest = 0;

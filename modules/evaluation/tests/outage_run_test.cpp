@@ -6,7 +6,7 @@
 #include <memory>
 #include <optional>
 
-#include "drifting_estimator.h"
+#include "support/drifting_estimator.h"
 
 namespace foucault::evaluation {
 namespace {

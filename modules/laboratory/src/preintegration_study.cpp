@@ -99,7 +99,7 @@ class IntervalRecorder {
     Preintegrator integrator({}, {}, increments[1].t_begin_ns, increments.front());
     integrate(integrator, increments, durations_s_, [&](std::size_t mark) {
       const Preintegration pre = integrator.result();
-      for (const Model& m : foucault::models()) {
+      for (const Model& m : laboratory::models()) {
         const Interval& seen = m.local ? frames_.local : frames_.trip;
         const EarthModel earth = earth_model(m.model, seen.frame, seen.x0.p_w_b);
         add(LabGroup::model, m.name.key, rate_hz, mark, m.local ? 0 : distance_m_,
@@ -112,7 +112,7 @@ class IntervalRecorder {
   }
 
   void ablations(const std::vector<ImuIncrement>& increments, double rate_hz) const {
-    for (const Ablation& ablation : foucault::ablations()) {
+    for (const Ablation& ablation : laboratory::ablations()) {
       reckon(LabGroup::ablation, ablation.name.key, ablation.terms, increments, rate_hz);
     }
   }

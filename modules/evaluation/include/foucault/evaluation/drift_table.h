@@ -25,6 +25,9 @@ std::string to_markdown(const TextTable& table);
 /// For a terminal: columns in line, the first one to the left, the others to the right.
 std::string to_plain_text(const TextTable& table);
 
+/// A text without its line ends.
+std::vector<std::string> text_lines(const std::string& text);
+
 /// All outages of one IMU by one method, over all its recordings and shifts; the same outages in
 /// the same order for every method of an IMU.
 struct MethodDrifts {

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "console.h"
+#include "foucault/evaluation/experiment.h"
+#include "pages/evaluation_page.h"
+#include "settings.h"
+
+namespace foucault::app {
+
+/// One method on one log; settings.outages.shifts_s make a run each.
+struct EvaluationCase {
+  std::string log;        ///< rawlog
+  std::string recording;  ///< its name in tables
+  std::string imu;        ///< recordings of one IMU are joined in tables
+  std::string method;     ///< see methods.h
+  std::string label;      ///< of the method in tables; empty: its name
+  Settings settings;
+};
+
+/// Every method on every log with the same settings; recordings are named by their files.
+/// Throws UsageError if a log or method is given twice.
+std::vector<EvaluationCase> cross(const std::vector<std::string>& logs,
+                                  const std::vector<std::string>& methods,
+                                  const Settings& settings);
+
+/// The runs of a case, one a shift. Throws UsageError for settings that make no sense.
+std::vector<ExperimentRun> experiment_runs(const EvaluationCase& evaluation_case);
+
+/// Opens each log once: what is missing or no rawlog shows before hours are spent on others.
+void check_logs(const std::vector<std::string>& logs, const Settings& settings);
+
+struct Evaluation {
+  std::vector<ExperimentResult> results;
+  std::vector<std::string> damages;   ///< logs that break off, a line each; results are up to there
+  std::vector<std::string> failures;  ///< of methods, a line each; they have no results
+};
+
+/// Runs all cases on `threads` threads; results in the order of the cases, then of the shifts.
+/// Says what users should know about the data. Throws DataError, also if every method failed,
+/// UsageError, Interrupted.
+Evaluation evaluate_what_is_there(const std::vector<EvaluationCase>& cases, int threads,
+                                  Console& console);
+
+/// The same with a DataError for a log that breaks off and a method that fails.
+std::vector<ExperimentResult> evaluate(const std::vector<EvaluationCase>& cases, int threads,
+                                       Console& console);
+
+/// The files of an evaluation, and its report if it is asked for.
+void write_evaluation(const EvaluationSummary& summary, const EvaluationLabels& labels,
+                      bool with_report, const std::filesystem::path& folder, Console& console);
+
+}  // namespace foucault::app

@@ -1,0 +1,84 @@
+#include "jobs/laboratory_job.h"
+
+#include <memory>
+#include <optional>
+#include <variant>
+
+#include "foucault/diagnosis/log_check.h"
+#include "foucault/rawlog/rawlog_source.h"
+#include "jobs/simulation_job.h"
+#include "methods.h"
+
+namespace foucault::app {
+namespace {
+
+void write(const laboratory::FaultCase& fault, const Settings& settings, int64_t seed,
+           const std::string& log) {
+  SimulationSettings simulation;
+  simulation.imu = settings.imu;
+  simulation.scenario = laboratory::fault_scenario(seed);
+  Console quiet(true);
+  write_simulation(simulation, fault, log, quiet);
+}
+
+/// What `foucault run` does with a log, and says.
+std::optional<std::string> process(const std::string& log, const std::string& method,
+                                   const Settings& settings, laboratory::FaultObserver& observer) {
+  RawlogSource source(log, settings.imu.sample_kind(), settings.rawlog);
+  observer.place(source.mounting());
+  const std::unique_ptr<Estimator> estimator =
+      find_method(method).make(settings, source.mounting(), observer);
+  LogChecker checker(settings.imu.noise(), source.mounting());
+  while (const std::optional<Measurement> measurement = source.next()) {
+    checker.add(*measurement);
+    if (const auto* reference = std::get_if<ReferencePose>(&*measurement)) {
+      observer.reference(*reference);
+    }
+    estimator->process(*measurement);
+  }
+  estimator->finish();
+  observer.judge();
+  for (const Notice& notice : source.notices()) observer.notice(notice);
+  for (const Notice& notice : checker.warnings()) observer.notice(notice);
+  return source.damage();
+}
+
+}  // namespace
+
+std::vector<laboratory::FaultOutcome> run_fault(const laboratory::FaultCase& fault,
+                                                const std::vector<std::string>& methods,
+                                                const Settings& settings, int64_t seed,
+                                                const std::string& log) {
+  laboratory::FaultProgram program;
+  program.write = [&](const laboratory::FaultCase& what, int64_t of_trip, const std::string& path) {
+    write(what, settings, of_trip, path);
+  };
+  program.process = [&](const std::string& path, const std::string& method,
+                        laboratory::FaultObserver& observer) {
+    return process(path, method, settings, observer);
+  };
+  return laboratory::run_fault(fault, methods, seed, log, program);
+}
+
+laboratory::ReturnOutcome study_return(const laboratory::ReturnCase& what,
+                                       const Settings& settings) {
+  laboratory::ReturnProgram program;
+  program.outages = settings.outages;
+  program.noise = settings.imu.noise();
+  program.open = [&](const std::string& log) {
+    return std::make_unique<RawlogSource>(log, settings.imu.sample_kind(), settings.rawlog);
+  };
+  program.method = [&](const laboratory::ReturnCase& of_case, bool gate) {
+    Settings configured = settings;
+    configured.imu = settings.imu.scaled(of_case.noise);
+    if (!gate) configured.gnss.gate_false_alarm = 0;
+    const Method& method = find_method(of_case.method);
+    const auto make = [make = method.make, configured](const Mounting& mounting, Sink& sink) {
+      return make(configured, mounting, sink);
+    };
+    return laboratory::ReturnMethod{make, method.keep_references_s};
+  };
+  return laboratory::study_return(what, program);
+}
+
+}  // namespace foucault::app

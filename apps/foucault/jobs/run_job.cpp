@@ -1,0 +1,154 @@
+#include "jobs/run_job.h"
+
+#include <fmt/format.h>
+
+#include <memory>
+#include <optional>
+#include <variant>
+
+#include "foucault/content/run_report.h"
+#include "foucault/core/error.h"
+#include "foucault/core/profile.h"
+#include "foucault/diagnosis/log_check.h"
+#include "foucault/export/text_file.h"
+#include "foucault/rawlog/rawlog_source.h"
+#include "jobs/run_output.h"
+#include "methods.h"
+#include "output_directory.h"
+#include "pages/run_page.h"
+#include "texts/profile_text.h"
+#include "texts/run_text.h"
+#include "version.h"
+
+namespace foucault::app {
+namespace {
+
+/// An estimator does not know where its measurements come from, and that they ended too early;
+/// whoever reads its errors should.
+template <class Work>
+void naming(const std::string& log, const RawlogSource& source, Work work) {
+  try {
+    work();
+  } catch (const exports::WriteError&) {
+    throw;
+  } catch (const DataError& error) {
+    const std::string of = source.damage().value_or(fmt::format("'{}'", log));
+    throw DataError(fmt::format("{}: {}", of, error.what()));
+  }
+}
+
+/// So many that a profile need not look at the clock for each measurement.
+constexpr std::size_t kBatch = 64;
+
+/// Empty at the end of the log.
+void read_batch(RawlogSource& source, std::vector<Measurement>& batch) {
+  const StageTimer timer(Stage::read);
+  batch.clear();
+  while (batch.size() < kBatch) {
+    std::optional<Measurement> measurement = source.next();
+    if (!measurement) return;
+    batch.push_back(std::move(*measurement));
+  }
+}
+
+void check_batch(const std::vector<Measurement>& batch, LogChecker& checker) {
+  const StageTimer timer(Stage::statistics);
+  for (const Measurement& measurement : batch) checker.add(measurement);
+}
+
+void process_batch(const std::vector<Measurement>& batch, Estimator& estimator, RunOutput& output) {
+  for (const Measurement& measurement : batch) {
+    output.measurement(measurement);
+    estimator.process(measurement);
+  }
+}
+
+void process(const std::string& log, RawlogSource& source, Estimator& estimator, Stage per_sample,
+             RunOutput& output, LogChecker& checker, Console& console) {
+  std::vector<Measurement> batch;
+  batch.reserve(kBatch);
+  for (read_batch(source, batch); !batch.empty(); read_batch(source, batch)) {
+    check_batch(batch, checker);
+    const StageTimer timer(per_sample);
+    naming(log, source, [&] { process_batch(batch, estimator, output); });
+    console.progress("processing", source.progress());
+  }
+  naming(log, source, [&] { estimator.finish(); });
+  for (const Notice& notice : source.notices()) output.notice(notice);
+  for (const Notice& notice : checker.warnings()) output.notice(notice);
+  if (source.damage()) output.damage(*source.damage());
+}
+
+content::RunLabels labels(const RunJob& job, const std::string& config) {
+  return {std::filesystem::path(job.log).filename().string(), job.method, kVersion,
+          job.command_line, config};
+}
+
+void write_report(const RunResult& result, content::RunReport& report,
+                  const std::filesystem::path& folder, Console& console) {
+  const StageTimer timer(Stage::draw);
+  console.progress("drawing", 0);
+  report.banner(verdict_banner(result));
+  for (const page::KeyNumber& number : key_numbers(result)) report.key_number(number);
+  for (const page::Table& table : metrics_tables(result)) report.table(table);
+  report.write((folder / "report").string());
+}
+
+}  // namespace
+
+RunResult run_into(const RunJob& job, const std::filesystem::path& folder, Console& console) {
+  std::optional<Profile> profile;
+  if (job.profile) profile.emplace().add(Stage::start, process_cpu_s());
+  const ResourceMeter meter;
+  Settings settings = job.settings;
+  const std::string config = dump_config(settings);
+  const Method& method = find_method(job.method);
+
+  RawlogSource source(job.log, settings.imu.sample_kind(), settings.rawlog);
+  std::optional<content::RunReport> report;
+  if (job.report) report.emplace(labels(job, config), source.mounting());
+  RunOutput output(folder, source.mounting(), settings.output, method.keep_references_s,
+                   report ? &*report : nullptr, console);
+  const std::unique_ptr<Estimator> estimator = method.make(settings, source.mounting(), output);
+  LogChecker checker(settings.imu.noise(), source.mounting());
+  process(job.log, source, *estimator, method.per_sample, output, checker, console);
+
+  RunResult result;
+  result.method = job.method;
+  result.log = std::filesystem::path(job.log).filename().string();
+  result.out = job.out;
+  result.report = job.report;
+  result.statistics_from_s = settings.output.statistics_from_s;
+  result.metrics = output.finish();
+  result.damage = source.damage();
+  if (result.metrics.epochs == 0) {
+    if (result.damage) throw DataError(*result.damage);
+    throw DataError(fmt::format("'{}': no epoch came out of the data", job.log));
+  }
+  result.calibration = calibrated_blocks(output.last_epoch(), settings.calibrate.layout());
+  result.resources = meter.used();
+  if (report) write_report(result, *report, folder, console);
+  if (profile) result.profile = profile->times();
+  exports::write_text_file(folder / "metrics.json", metrics_json(result));
+  exports::write_text_file(folder / "config.yaml", config);
+  return result;
+}
+
+RunResult run(const RunJob& job, Console& console) {
+  find_method(job.method);
+  job.settings.imu.noise();
+  OutputDirectory out(job.out);
+  const RunResult result = run_into(job, out.staging(), console);
+  out.commit();
+  return result;
+}
+
+std::vector<std::string> summary_lines(const RunResult& result) {
+  std::vector<std::string> lines = metrics_lines(result);
+  for (const std::string& line : profile_lines(result.profile)) lines.push_back(line);
+  for (const std::string& line : written_lines(result.out, result.report)) lines.push_back(line);
+  lines.push_back(verdict_line(result));
+  return lines;
+}
+
+}  // namespace foucault::app

@@ -1,0 +1,114 @@
+#include "jobs/run_output.h"
+
+#include <fmt/format.h>
+
+#include <variant>
+
+#include "foucault/core/profile.h"
+#include "foucault/core/time.h"
+#include "foucault/core/units.h"
+
+namespace foucault::app {
+namespace {
+
+ReferenceComparisonOptions comparison_options(double keep_s) {
+  ReferenceComparisonOptions options;
+  options.keep_s = keep_s;
+  return options;
+}
+
+}  // namespace
+
+RunOutput::RunOutput(const std::filesystem::path& folder, const Mounting& mounting,
+                     const OutputOptions& options, double keep_references_s,
+                     content::RunReport* report, Console& console)
+    : mounting_(mounting),
+      statistics_from_s_(options.statistics_from_s),
+      solution_(folder, mounting),
+      comparison_(
+          mounting,
+          [this](const Epoch& epoch, const ReferenceError& error) {
+            reference_error(epoch, error);
+          },
+          comparison_options(keep_references_s)),
+      report_(report),
+      console_(console) {}
+
+void RunOutput::measurement(const Measurement& measurement) {
+  if (const auto* fix = std::get_if<GnssFix>(&measurement)) {
+    if (!metrics_) start_metrics(fix->t_ns);
+  } else if (const auto* reference = std::get_if<ReferencePose>(&measurement)) {
+    comparison_.add(*reference);
+  } else if (const auto* increment = std::get_if<ImuIncrement>(&measurement)) {
+    if (report_ != nullptr) report_->imu_stamp(increment->t_end_ns);
+  }
+}
+
+void RunOutput::start_metrics(int64_t first_fix_ns) {
+  metrics_.emplace(mounting_, first_fix_ns + nanoseconds(statistics_from_s_),
+                   [this](const NormalizedSquare& square) {
+                     if (report_ != nullptr) report_->normalized_square(square);
+                   });
+}
+
+void RunOutput::epoch(const Epoch& epoch) {
+  last_epoch_ = epoch;
+  write(epoch);
+  collect(epoch);
+  const StageTimer timer(Stage::statistics);
+  if (metrics_) metrics_->epoch(epoch);
+  comparison_.add(epoch);
+}
+
+void RunOutput::write(const Epoch& epoch) {
+  const StageTimer timer(Stage::write);
+  solution_.epoch(epoch);
+}
+
+void RunOutput::collect(const Epoch& epoch) {
+  if (report_ == nullptr) return;
+  const StageTimer timer(Stage::draw);
+  report_->epoch(epoch);
+}
+
+void RunOutput::fix(const FixResult& fix) {
+  if (report_ != nullptr) report_->fix(fix);
+  if (metrics_) metrics_->fix(fix);
+}
+
+void RunOutput::observation(const ObservationResult& result) {
+  if (metrics_) metrics_->observation(result);
+}
+
+void RunOutput::prediction(const PredictionResult& prediction) {
+  if (metrics_) metrics_->prediction(prediction);
+}
+
+void RunOutput::notice(const Notice& notice) {
+  if (report_ != nullptr) report_->notice(notice);
+  if (notice.kind == NoticeKind::aligned) {
+    console_.say(fmt::format("start      {}, {}", utc_text(notice.t_ns), notice.text));
+  } else {
+    console_.warn(fmt::format("{}: {}", utc_text(notice.t_ns), notice.text));
+  }
+}
+
+void RunOutput::damage(const std::string& text) {
+  if (report_ != nullptr) report_->notice({last_epoch_.t_ns, NoticeKind::skipped, text});
+}
+
+void RunOutput::reference_error(const Epoch& epoch, const ReferenceError& error) {
+  if (report_ != nullptr) report_->reference_error(epoch, error);
+  if (metrics_) metrics_->reference_error(epoch, error);
+}
+
+RunMetrics RunOutput::finish() {
+  const StageTimer timer(Stage::write);
+  solution_.finish();
+  if (!metrics_) return {};
+  const RunMetrics metrics = metrics_->metrics();
+  if (report_ != nullptr) report_->consistency(metrics.consistency);
+  return metrics;
+}
+
+}  // namespace foucault::app

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+#include "console.h"
+#include "foucault/content/run_report.h"
+#include "foucault/evaluation/reference_error.h"
+#include "foucault/evaluation/run_metrics.h"
+#include "foucault/export/solution_writer.h"
+#include "foucault/state/interfaces.h"
+#include "settings.h"
+
+namespace foucault::app {
+
+/// Where everything that comes out of a run goes: solution files, metrics, report, console.
+class RunOutput : public Sink {
+ public:
+  /// `keep_references_s`: how far epochs may lag behind references. `report` may be null; it and
+  /// the console must outlive this.
+  RunOutput(const std::filesystem::path& folder, const Mounting& mounting,
+            const OutputOptions& options, double keep_references_s, content::RunReport* report,
+            Console& console);
+
+  /// Every measurement, before the estimator gets it: references and stamps are taken from it.
+  void measurement(const Measurement& measurement);
+
+  void epoch(const Epoch& epoch) override;
+  void fix(const FixResult& fix) override;
+  void observation(const ObservationResult& result) override;
+  void notice(const Notice& notice) override;
+  bool wants_predictions() const override { return true; }
+  void prediction(const PredictionResult& prediction) override;
+  /// Why the log broke off, for the report; the command says it at its end.
+  void damage(const std::string& text);
+
+  /// Completes the files, and what the report needs.
+  RunMetrics finish();
+  const Epoch& last_epoch() const { return last_epoch_; }
+
+ private:
+  void start_metrics(int64_t first_fix_ns);
+  void write(const Epoch& epoch);
+  void collect(const Epoch& epoch);
+  void reference_error(const Epoch& epoch, const ReferenceError& error);
+
+  Mounting mounting_;
+  double statistics_from_s_;
+  exports::SolutionWriter solution_;
+  ReferenceComparison comparison_;
+  std::optional<RunMetricsCollector> metrics_;  ///< from the first fix on
+  Epoch last_epoch_;
+  content::RunReport* report_;
+  Console& console_;
+};
+
+}  // namespace foucault::app

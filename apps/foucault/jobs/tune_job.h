@@ -1,0 +1,40 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "console.h"
+#include "foucault/tuning/search.h"
+#include "settings.h"
+
+namespace foucault::app {
+
+struct TuneJob {
+  std::vector<std::string> logs;
+  Settings base;
+  tuning::TuneConfig config;
+  std::string out;  ///< folder
+  int threads = 1;
+  bool report = true;
+  std::string command_line;
+
+  /// The base with the values of a point.
+  Settings at(const tuning::GridPoint& point) const;
+};
+
+/// Reads the file of a search into base and config, or its text; `assignments` (key=value) change
+/// the base. Throws as tuning::load_tune_config does.
+void load_grid(const std::string& path, const std::vector<std::string>& assignments, TuneJob& job);
+void load_grid_text(const std::string& yaml, const std::string& origin,
+                    const std::vector<std::string>& assignments, TuneJob& job);
+
+/// Searches the grid for each method. Every finished point is kept in out/points.csv at once: the
+/// same command goes on from there after a kill, and ends with the same result.
+/// Throws DataError, UsageError, Interrupted.
+std::vector<tuning::MethodTuning> search(const TuneJob& job, Console& console);
+
+/// Searches and writes best.yaml (best-METHOD.yaml for several), results.csv, metrics.json,
+/// heatmaps/ and report/ to job.out: all of it or nothing. Returns what to tell the user.
+std::vector<std::string> tune(const TuneJob& job, Console& console);
+
+}  // namespace foucault::app

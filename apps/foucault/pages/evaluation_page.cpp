@@ -1,0 +1,346 @@
+#include "pages/evaluation_page.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <tuple>
+#include <utility>
+
+#include "foucault/core/time.h"
+#include "foucault/evaluation/statistics.h"
+#include "foucault/geodesy/local_frame.h"
+
+namespace foucault::app {
+namespace {
+
+using content::DriftCase;
+using content::DriftRms;
+using content::ErrorTimeline;
+using content::GroundPath;
+using content::OutageMap;
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kLongestLine = 5;  ///< over longer holes between points no line is drawn [s]
+constexpr std::size_t kMostRecordings = 6;
+
+/// The runs of all methods over one recording with one shift.
+using ComparedRuns = std::vector<const ExperimentResult*>;
+
+content::Bounded bounded(const Estimate& e) { return {e.value, e.low, e.high}; }
+
+content::OutageCurve curve(const MethodOutages::Entry& entry) {
+  content::OutageCurve curve;
+  curve.label = fmt::format("{}, shift {} s, outage {}", entry.run->recording, entry.run->shift_s,
+                            entry.drift->outage.index + 1);
+  for (const DriftSample& sample : entry.drift->samples) {
+    curve.since_begin_s.push_back(sample.since_begin_s);
+    curve.horizontal_m.push_back(sample.horizontal());
+    curve.vertical_m.push_back(sample.vertical());
+  }
+  curve.max_horizontal_m = entry.drift->maximum.horizontal;
+  curve.max_vertical_m = entry.drift->maximum.vertical;
+  return curve;
+}
+
+content::MethodCurves method_curves(const MethodOutages& outages) {
+  content::MethodCurves curves{outages.method, {}};
+  for (const MethodOutages::Entry& entry : outages.entries) curves.outages.push_back(curve(entry));
+  return curves;
+}
+
+/// A case a group, in order of appearance.
+std::vector<DriftCase> drift_cases(const std::vector<MethodOutages>& outages) {
+  std::vector<DriftCase> cases;
+  for (const MethodOutages& o : outages) {
+    if (o.entries.empty()) continue;
+    if (cases.empty() || cases.back().name != o.group) cases.push_back({o.group, {}});
+    cases.back().methods.push_back(method_curves(o));
+  }
+  return cases;
+}
+
+std::vector<DriftRms> drift_rms(const std::vector<MethodOutages>& rows) {
+  std::vector<DriftRms> rms;
+  for (const MethodOutages& row : rows) {
+    if (row.entries.empty()) continue;
+    rms.push_back({row.group, row.method, bounded(summarize(row.horizontal_max()).rms),
+                   bounded(summarize(row.vertical_max()).rms)});
+  }
+  return rms;
+}
+
+/// The first shift of each recording (of each IMU's first recording, if there are several IMUs).
+std::vector<ComparedRuns> shown_runs(const EvaluationSummary& summary) {
+  const bool by_imu = summary.row_header() == "IMU";
+  std::vector<ComparedRuns> shown;
+  const auto of_same = [&](const ExperimentResult& r) {
+    return std::find_if(shown.begin(), shown.end(), [&](const ComparedRuns& runs) {
+      return runs[0]->imu == r.imu && (by_imu || runs[0]->recording == r.recording);
+    });
+  };
+  for (const ExperimentResult& r : summary.results()) {
+    const auto found = of_same(r);
+    if (found == shown.end()) {
+      if (shown.size() < kMostRecordings) shown.push_back({&r});
+    } else if (found->front()->recording == r.recording && found->front()->shift_s == r.shift_s) {
+      found->push_back(&r);
+    }
+  }
+  return shown;
+}
+
+std::string name_of(const ComparedRuns& runs, const EvaluationSummary& summary) {
+  return summary.row_header() == "IMU"
+             ? fmt::format("{}, {}", runs.front()->imu, runs.front()->recording)
+             : runs.front()->recording;
+}
+
+/// Points with a mark where no line is to be drawn.
+template <class Point>
+void walk(const std::vector<TrackPoint>& points, Point point, const std::function<void()>& gap) {
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (i > 0 && seconds_between(points[i - 1].t_ns, points[i].t_ns) > kLongestLine) gap();
+    point(points[i]);
+  }
+}
+
+ErrorTimeline::Curve timeline_curve(const ExperimentResult& run) {
+  ErrorTimeline::Curve curve{run.method, {}, {}};
+  const auto put = [&](double t_s, double horizontal_m) {
+    curve.t_s.push_back(t_s);
+    curve.horizontal_m.push_back(horizontal_m);
+  };
+  walk(
+      run.track,
+      [&](const TrackPoint& p) {
+        put(seconds_between(run.run.first_fix_ns, p.t_ns), p.horizontal());
+      },
+      [&] { put(curve.t_s.back() + 0.5 * kLongestLine, kNaN); });
+  return curve;
+}
+
+ErrorTimeline timeline(const ComparedRuns& runs, const std::string& name) {
+  ErrorTimeline timeline{name, {}, {}};
+  const OutageRunResult& first = runs.front()->run;
+  for (const Outage& outage : first.withheld) {
+    timeline.outages.push_back(
+        {seconds_between(first.first_fix_ns, outage.begin_ns),
+         seconds_between(first.first_fix_ns, std::min(outage.end_ns, first.last_fix_ns))});
+  }
+  for (const ExperimentResult* run : runs) timeline.curves.push_back(timeline_curve(*run));
+  return timeline;
+}
+
+void add(GroundPath& path, const Eigen::Vector3d& p_w) {
+  path.north_m.push_back(p_w.x());
+  path.east_m.push_back(p_w.y());
+}
+
+void add_gap(GroundPath& path) { add(path, Eigen::Vector3d::Constant(kNaN)); }
+
+/// The points inside an outage.
+std::vector<TrackPoint> during(const ExperimentResult& run, const Outage& outage) {
+  std::vector<TrackPoint> points;
+  std::copy_if(run.track.begin(), run.track.end(), std::back_inserter(points),
+               [&](const TrackPoint& p) {
+                 return p.t_ns > outage.begin_ns && p.t_ns <= outage.end_ns + kStampToleranceNs;
+               });
+  return points;
+}
+
+OutageMap outage_map(const ComparedRuns& runs, const std::string& name) {
+  OutageMap map;
+  map.name = name;
+  const ExperimentResult& first = *runs.front();
+  if (first.track.empty()) return map;
+  const LocalFrame frame(first.track.front().position);
+  const auto truth = [&](const TrackPoint& p) -> Eigen::Vector3d {
+    return frame.to_local(p.position) - frame.R_w_n(p.position) * p.error_n;
+  };
+  walk(
+      first.track, [&](const TrackPoint& p) { add(map.truth, truth(p)); },
+      [&] { add_gap(map.truth); });
+  for (const Outage& outage : first.run.withheld) {
+    for (const TrackPoint& p : during(first, outage)) add(map.truth_in_outages, truth(p));
+    add_gap(map.truth_in_outages);
+  }
+  for (const ExperimentResult* run : runs) {
+    OutageMap::Estimate estimate{run->method, {}};
+    for (const Outage& outage : run->run.withheld) {
+      for (const TrackPoint& p : during(*run, outage)) {
+        add(estimate.path, frame.to_local(p.position));
+      }
+      add_gap(estimate.path);
+    }
+    map.estimates.push_back(std::move(estimate));
+  }
+  return map;
+}
+
+content::DistanceDrift::Method distance_method(const MethodOutages& outages,
+                                               const DistanceProfile& profile) {
+  content::DistanceDrift::Method method;
+  method.method = outages.method;
+  for (const MethodOutages::Entry& entry : outages.entries) {
+    method.distance_km.push_back(entry.drift->distance_m * 1e-3);
+  }
+  method.horizontal_m = outages.horizontal_max();
+  method.vertical_m = outages.vertical_max();
+  for (const ProfileBin& bin : profile.bins) {
+    for (const BinDrift& drift : bin.methods) {
+      if (drift.method != outages.method) continue;
+      method.bins.push_back({bin.mean_km, bounded(drift.horizontal_m), bounded(drift.vertical_m)});
+    }
+  }
+  return method;
+}
+
+std::vector<content::DistanceDrift> distance_drifts(const EvaluationSummary& summary) {
+  std::vector<content::DistanceDrift> drifts;
+  for (const DistanceProfile& profile : summary.distances()) {
+    content::DistanceDrift drift{profile.group, {}};
+    for (const MethodOutages& o : summary.distance_groups()) {
+      if (o.group == profile.group) drift.methods.push_back(distance_method(o, profile));
+    }
+    drifts.push_back(std::move(drift));
+  }
+  return drifts;
+}
+
+std::vector<page::Table> distance_tables(const EvaluationSummary& summary) {
+  if (summary.distances().empty()) return {};
+  std::vector<page::Table> tables{
+      report_table(distance_table(summary.distances(), summary.row_header()),
+                   "RMS over the outages of a bin of the largest drift in each, with the 95 % "
+                   "bootstrap interval.")};
+  if (summary.methods().size() > 1) {
+    tables.push_back(report_table(
+        distance_difference_table(summary.distances(), summary.row_header()),
+        "The interval is a 95 % bootstrap over the outages of the bin, drawn in pairs."));
+  }
+  return tables;
+}
+
+content::Bounded bounded(const PooledSquares& squares) {
+  if (squares.outages == 0) return {kNaN, kNaN, kNaN};
+  return {squares.mean, squares.band.low, squares.band.high};
+}
+
+content::NormalizedErrors::Method normalized_method(const MethodNormalizedDrifts& drifts,
+                                                    const std::vector<std::string>& times) {
+  content::NormalizedErrors::Method method{drifts.method, {}, {}};
+  for (const std::string& time : times) {
+    const auto found =
+        std::find_if(drifts.times.begin(), drifts.times.end(),
+                     [&](const NormalizedDrift& drift) { return time_text(drift) == time; });
+    const NormalizedDrift drift = found == drifts.times.end() ? NormalizedDrift{} : *found;
+    method.horizontal.push_back(bounded(drift.horizontal));
+    method.vertical.push_back(bounded(drift.vertical));
+  }
+  return method;
+}
+
+/// An entry an IMU, else one for the last group: all recordings together, or the only one.
+std::vector<content::NormalizedErrors> normalized_errors(const EvaluationSummary& summary) {
+  const std::vector<std::string> times = times_of(summary.normalized());
+  std::vector<content::NormalizedErrors> all;
+  for (const MethodNormalizedDrifts& drifts : summary.normalized()) {
+    if (summary.row_header() != "IMU" && drifts.group != summary.rows().back().group) continue;
+    if (all.empty() || all.back().name != drifts.group) all.push_back({drifts.group, times, {}});
+    all.back().methods.push_back(normalized_method(drifts, times));
+  }
+  return all;
+}
+
+std::vector<page::Table> consistency_tables(const EvaluationSummary& summary) {
+  std::vector<page::Table> tables;
+  if (!summary.normalized().empty()) {
+    tables.push_back(report_table(
+        summary.normalized_table(),
+        "In brackets the band that holds the mean with 95 % if the sigmas are right (chi-square of "
+        "2 or 1 degrees of freedom an outage). Where the truth is a withheld fix, its covariance "
+        "is "
+        "added."));
+  }
+  if (!summary.returns().empty()) {
+    tables.push_back(report_table(
+        summary.return_table(),
+        "From the first fix after an outage on. Never: the error was still, or again, outside of "
+        "the 3-sigma ellipse of the fixes when these seconds were over. Without a reference the "
+        "fixes themselves are the truth, which the method has used: metres are real, centimetres "
+        "say little."));
+  }
+  return tables;
+}
+
+std::vector<page::KeyNumber> key_numbers(const EvaluationSummary& summary) {
+  std::vector<page::KeyNumber> numbers;
+  for (const MethodOutages& o : summary.overall()) {
+    numbers.push_back({fmt::format("{}, horizontal RMS", o.method),
+                       fmt::format("{:.2f}", root_mean_square(o.horizontal_max())), "m",
+                       fmt::format("vertical {:.2f} m, {} outages",
+                                   root_mean_square(o.vertical_max()), o.entries.size())});
+  }
+  return numbers;
+}
+
+std::vector<page::Table> report_tables(const EvaluationSummary& summary) {
+  std::vector<page::Table> tables{report_table(
+      summary.rms_table(), "RMS over the outages of the largest drift in each, as in Table III.")};
+  if (summary.methods().size() > 1) {
+    tables.push_back(report_table(
+        summary.difference_table(),
+        "As in Table IV. The interval is a 95 % bootstrap over outages, drawn in pairs: where it "
+        "holds zero, these outages do not tell the two methods apart."));
+  }
+  tables.push_back(report_table(summary.statistics_table()));
+  return tables;
+}
+
+/// Cases of the figures: IMUs, or all recordings together.
+std::vector<DriftCase> shown_cases(const EvaluationSummary& summary) {
+  if (summary.row_header() == "IMU") return drift_cases(summary.rows());
+  std::vector<DriftCase> cases = drift_cases(summary.overall());
+  const std::vector<ExperimentResult>& results = summary.results();
+  const bool only_one = std::all_of(results.begin(), results.end(), [&](const auto& result) {
+    return result.recording == results.front().recording;
+  });
+  if (only_one) cases.front().name = results.front().recording;
+  return cases;
+}
+
+}  // namespace
+
+page::Table report_table(const TextTable& table, const std::string& note) {
+  return {table.title, note, false, table.header, table.rows};
+}
+
+content::EvaluationReport evaluation_report(const EvaluationSummary& summary,
+                                            const EvaluationLabels& labels) {
+  content::EvaluationReport report;
+  report.title = labels.title;
+  report.subtitle = "Outages: " + outages_text(summary);
+  report.methods = summary.methods();
+  report.remarks = labels.remarks;
+  report.key_numbers = key_numbers(summary);
+  report.tables = report_tables(summary);
+  report.rms = drift_rms(summary.rows());
+  report.cases = shown_cases(summary);
+  report.distances = distance_drifts(summary);
+  report.distance_tables = distance_tables(summary);
+  report.normalized = normalized_errors(summary);
+  report.consistency_tables = consistency_tables(summary);
+  for (const ComparedRuns& runs : shown_runs(summary)) {
+    const std::string name = name_of(runs, summary);
+    report.timelines.push_back(timeline(runs, name));
+    report.maps.push_back(outage_map(runs, name));
+  }
+  const auto& [command_line, config, version] = labels.origin;
+  if (!command_line.empty()) report.listings.push_back({"Command", command_line});
+  if (!config.empty()) report.listings.push_back({"Configuration", config});
+  report.footer = fmt::format("foucault {}", version);
+  return report;
+}
+
+}  // namespace foucault::app

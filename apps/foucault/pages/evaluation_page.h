@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "foucault/content/evaluation_report.h"
+#include "foucault/evaluation/summary.h"
+#include "foucault/export/evaluation_files.h"
+
+namespace foucault::app {
+
+struct EvaluationLabels {
+  std::string title = "Outage evaluation";
+  std::vector<std::string> remarks;  ///< paragraphs at the top of the report
+  exports::Provenance origin;
+};
+
+/// The report of an evaluation as plain data.
+content::EvaluationReport evaluation_report(const EvaluationSummary& summary,
+                                            const EvaluationLabels& labels);
+
+page::Table report_table(const TextTable& table, const std::string& note = "");
+
+}  // namespace foucault::app

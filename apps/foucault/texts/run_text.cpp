@@ -1,0 +1,97 @@
+#include "texts/run_text.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+
+#include "foucault/core/units.h"
+#include "foucault/export/json_object.h"
+#include "foucault/export/run_metrics_json.h"
+#include "texts/profile_text.h"
+#include "version.h"
+
+namespace foucault::app {
+namespace {
+
+using exports::Json;
+using exports::Object;
+
+Json profile_json(const std::vector<StageTime>& profile) {
+  Json json = Json::object();
+  for (const StageTime& time : profile) {
+    json[fmt::format("{}_s", stage_name(time.stage))] = time.seconds;
+  }
+  json["total_s"] = total_seconds(profile);
+  return json;
+}
+
+/// "-" if no fix counts for the statistics.
+std::string innovation_text(const GnssMetrics& gnss) {
+  if (gnss.samples == 0) return "-";
+  const Eigen::Vector3d& v = gnss.innovation_rms_n;
+  return fmt::format("{:.2f} / {:.2f} / {:.2f} cm", 100 * v.x(), 100 * v.y(), 100 * v.z());
+}
+
+std::string attitude_text(const ReferenceMetrics& r) {
+  if (!r.roll_rmse || !r.pitch_rmse || !r.heading_rmse) return "";
+  return fmt::format("; roll {:.3f}, pitch {:.3f}, heading {:.3f} deg",
+                     *r.roll_rmse * units::kDegrees, *r.pitch_rmse * units::kDegrees,
+                     *r.heading_rmse * units::kDegrees);
+}
+
+}  // namespace
+
+std::string size_text(const RunResult& result) {
+  const SquareConsistency& nis = result.metrics.consistency.nis;
+  return fmt::format("innovations of {} fixes are {:.2f} times as large as their sigmas",
+                     nis.samples, std::sqrt(nis.mean / 3));
+}
+
+std::string metrics_json(const RunResult& result) {
+  Json json = Object().with("method", result.method);
+  json.update(exports::run_metrics_json(result.metrics, result.calibration));
+  json["statistics_from_s"] = result.statistics_from_s;
+  json["cpu_s"] = result.resources.cpu_s;
+  json["wall_s"] = result.resources.wall_s;
+  json["peak_rss_mb"] = result.resources.peak_rss_mb;
+  json["log"] = result.log;
+  if (!result.profile.empty()) json["profile"] = profile_json(result.profile);
+  if (result.damage) json["damage"] = *result.damage;
+  json["version"] = kVersion;
+  return json.dump(2) + "\n";
+}
+
+std::vector<std::string> metrics_lines(const RunResult& result) {
+  const RunMetrics& m = result.metrics;
+  std::vector<std::string> lines{
+      fmt::format("method     {}, {} epochs over {:.1f} s", result.method, m.epochs, m.duration_s),
+      fmt::format("GNSS       {} fixes used, {} rejected; innovation RMS north / east / down {}",
+                  m.gnss.used, m.gnss.rejected, innovation_text(m.gnss))};
+  for (const auto& [name, aid] : m.aids) {
+    lines.push_back(fmt::format("aid        {}: {} used, {} rejected; mean NIS {:.2f}", name,
+                                aid.used, aid.rejected, aid.mean_nis()));
+  }
+  for (const CalibratedBlock& b : result.calibration) {
+    lines.push_back(fmt::format("calibrated {} [{}]: {:.3g} +- {:.2g}", b.block.name, b.block.unit,
+                                fmt::join(b.value, " "), fmt::join(b.sigma, " ")));
+  }
+  if (m.reference) {
+    lines.push_back(fmt::format("reference  RMS error horizontal {:.3f} m, vertical {:.3f} m{}",
+                                m.reference->horizontal_rmse, m.reference->vertical_rmse,
+                                attitude_text(*m.reference)));
+  }
+  lines.push_back(fmt::format("resources  {:.1f} s wall, {:.1f} s CPU, {:.0f} MB",
+                              result.resources.wall_s, result.resources.cpu_s,
+                              result.resources.peak_rss_mb));
+  return lines;
+}
+
+std::string verdict_line(const RunResult& result) {
+  const Trust& trust = result.metrics.trust;
+  const std::string reasons = fmt::format("{}", fmt::join(trust.reasons, "; "));
+  if (!trust.trustworthy) return fmt::format("verdict    NOT TRUSTWORTHY: {}", reasons);
+  return fmt::format("verdict    trustworthy; {}", reasons.empty() ? size_text(result) : reasons);
+}
+
+}  // namespace foucault::app

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "jobs/run_job.h"
+
+/// The metrics of a run, for programs and for the console.
+namespace foucault::app {
+
+/// metrics.json
+std::string metrics_json(const RunResult& result);
+
+std::vector<std::string> metrics_lines(const RunResult& result);
+
+/// Whether the run can be believed, and why.
+std::string verdict_line(const RunResult& result);
+
+/// What speaks for a run.
+std::string size_text(const RunResult& result);
+
+}  // namespace foucault::app

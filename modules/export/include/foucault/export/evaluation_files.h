@@ -1,0 +1,23 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "foucault/evaluation/summary.h"
+
+namespace foucault::exports {
+
+/// Where results come from, for the record.
+struct Provenance {
+  std::string command_line;
+  std::string config;  ///< the effective configuration, YAML; may be empty
+  std::string version;
+};
+
+/// drift.csv, metrics.json, config.yaml and tables/table_iii, table_iv, statistics,
+/// normalized_drift, after_return (.csv, .md); for recordings that go far, also tables/distance and
+/// distance_difference.
+void write_evaluation(const EvaluationSummary& summary, const Provenance& origin,
+                      const std::filesystem::path& folder);
+
+}  // namespace foucault::exports

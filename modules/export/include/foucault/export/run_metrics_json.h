@@ -1,0 +1,14 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <vector>
+
+#include "foucault/evaluation/run_metrics.h"
+
+namespace foucault::exports {
+
+/// The metrics of a run as metrics.json has them; numbers that do not exist are null.
+nlohmann::ordered_json run_metrics_json(const RunMetrics& metrics,
+                                        const std::vector<CalibratedBlock>& calibration);
+
+}  // namespace foucault::exports

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "foucault/export/solution_file.h"
+#include "foucault/export/text_file.h"
+#include "foucault/state/interfaces.h"
+
+namespace foucault::exports {
+
+/// An epoch in the units and axes of solution.csv: local NED of the vehicle's place, attitude of
+/// the vehicle (forward-right-down).
+std::string csv_row(const Epoch& epoch, const Mounting& mounting);
+std::string csv_header();
+
+class SolutionCsv : public SolutionFile {
+ public:
+  SolutionCsv(const std::filesystem::path& path, const Mounting& mounting);
+
+  void epoch(const Epoch& epoch) override { file_.write(csv_row(epoch, mounting_)); }
+  void finish() override { file_.close(); }
+
+ private:
+  Mounting mounting_;
+  TextFile file_;
+};
+
+}  // namespace foucault::exports

@@ -1,0 +1,242 @@
+#include "foucault/export/evaluation_files.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "foucault/core/time.h"
+#include "foucault/export/json_object.h"
+#include "foucault/export/text_file.h"
+
+namespace foucault::exports {
+namespace {
+
+Json estimate_json(const Estimate& e) {
+  return Object().with("value", e.value).with("low", e.low).with("high", e.high);
+}
+
+Json statistics_json(const std::vector<double>& values) {
+  const Summary s = summarize(values);
+  return Object()
+      .with("rms", estimate_json(s.rms))
+      .with("mean", estimate_json(s.mean))
+      .with("median", estimate_json(s.median))
+      .with("p68", estimate_json(s.p68))
+      .with("p95", estimate_json(s.p95))
+      .with("max", estimate_json(s.max));
+}
+
+/// RMS over the outages at each mark that all of them reach.
+Json mark_json(const MethodOutages& outages, double DriftValue::*component) {
+  Json json = Json::object();
+  const std::vector<double>& marks_s = default_drift_marks_s();
+  for (std::size_t i = 0; i < marks_s.size(); ++i) {
+    std::vector<double> values;
+    for (const MethodOutages::Entry& entry : outages.entries) {
+      if (entry.drift->at_marks[i]) values.push_back((*entry.drift->at_marks[i]).*component);
+    }
+    if (values.size() != outages.entries.size()) continue;
+    json[fmt::format("{}", marks_s[i])] = root_mean_square(values);
+  }
+  return json;
+}
+
+Json method_json(const MethodOutages& outages) {
+  const std::vector<double> horizontal = outages.horizontal_max();
+  const std::vector<double> vertical = outages.vertical_max();
+  return Object()
+      .with("outages", outages.entries.size())
+      .with("horizontal_rmse_m", root_mean_square(horizontal))
+      .with("vertical_rmse_m", root_mean_square(vertical))
+      .with("cpu_s", outages.cpu_s)
+      .with("missing_outages", outages.missing)
+      .with("horizontal_m", statistics_json(horizontal))
+      .with("vertical_m", statistics_json(vertical))
+      .with("horizontal_rms_m_after_s", mark_json(outages, &DriftValue::horizontal))
+      .with("vertical_rms_m_after_s", mark_json(outages, &DriftValue::vertical));
+}
+
+Json methods_json(const std::vector<MethodOutages>& outages, const std::string& group) {
+  Json json = Json::object();
+  for (const MethodOutages& o : outages) {
+    if (o.group == group && !o.entries.empty()) json[o.method] = method_json(o);
+  }
+  return json;
+}
+
+Json paired_json(const std::vector<double>& base, const std::vector<double>& other) {
+  const PairedComparison c = compare_paired(base, other);
+  return Object()
+      .with("base_rms_m", c.base_rms)
+      .with("other_rms_m", c.other_rms)
+      .with("difference_m", estimate_json(c.rms_difference))
+      .with("relative", estimate_json(c.relative))
+      .with("share_larger", c.share_larger)
+      .with("p_value", c.p_value);
+}
+
+/// Each method against the first one of its group.
+Json comparisons_json(const std::vector<MethodOutages>& outages) {
+  Json json = Json::array();
+  for (const MethodOutages& other : outages) {
+    const auto base = std::find_if(outages.begin(), outages.end(),
+                                   [&](const MethodOutages& o) { return o.group == other.group; });
+    if (&*base == &other || other.entries.empty()) continue;
+    json.push_back(
+        Object()
+            .with("group", other.group)
+            .with("base", base->method)
+            .with("other", other.method)
+            .with("outages", other.entries.size())
+            .with("horizontal", paired_json(base->horizontal_max(), other.horizontal_max()))
+            .with("vertical", paired_json(base->vertical_max(), other.vertical_max())));
+  }
+  return json;
+}
+
+Json bin_json(const ProfileBin& bin) {
+  Json methods = Json::object();
+  for (const BinDrift& drift : bin.methods) {
+    methods[drift.method] =
+        Object()
+            .with("horizontal_rmse_m", estimate_json(drift.horizontal_m))
+            .with("vertical_rmse_m", estimate_json(drift.vertical_m))
+            .with("horizontal_relative", estimate_json(drift.horizontal_relative))
+            .with("vertical_relative", estimate_json(drift.vertical_relative));
+  }
+  return Object()
+      .with("from_km", bin.bin.from_km)
+      .with("to_km", bin.bin.to_km)
+      .with("mean_km", bin.mean_km)
+      .with("outages", bin.bin.outages.size())
+      .with("methods", methods);
+}
+
+/// Relative differences are from the first method.
+Json distances_json(const std::vector<DistanceProfile>& profiles) {
+  Json json = Json::array();
+  for (const DistanceProfile& profile : profiles) {
+    Json bins = Json::array();
+    for (const ProfileBin& bin : profile.bins) bins.push_back(bin_json(bin));
+    json.push_back(Object().with("group", profile.group).with("bins", bins));
+  }
+  return json;
+}
+
+Json squares_json(const MethodNormalizedDrifts& method, const NormalizedDrift& drift,
+                  const char* axis, const PooledSquares& squares) {
+  return Object()
+      .with("group", method.group)
+      .with("method", method.method)
+      .with("after_s", drift.after_s)
+      .with("middle", drift.middle)
+      .with("axis", axis)
+      .with("mean_square", squares.mean)
+      .with("band_low", squares.band.low)
+      .with("band_high", squares.band.high)
+      .with("outages", squares.outages);
+}
+
+/// An entry a group, method, time and axis; mean squares per degree of freedom.
+Json normalized_json(const std::vector<MethodNormalizedDrifts>& methods) {
+  Json json = Json::array();
+  for (const MethodNormalizedDrifts& method : methods) {
+    for (const NormalizedDrift& drift : method.times) {
+      if (drift.horizontal.outages > 0) {
+        json.push_back(squares_json(method, drift, "horizontal", drift.horizontal));
+      }
+      if (drift.vertical.outages > 0) {
+        json.push_back(squares_json(method, drift, "vertical", drift.vertical));
+      }
+    }
+  }
+  return json;
+}
+
+Json returns_json(const std::vector<PooledReturns>& returns) {
+  Json json = Json::array();
+  for (const PooledReturns& r : returns) {
+    json.push_back(Object()
+                       .with("group", r.group)
+                       .with("method", r.method)
+                       .with("window_s", kReturnWindowS)
+                       .with("outages", r.outages)
+                       .with("horizontal_rms_m", r.rms_horizontal)
+                       .with("horizontal_max_m", r.max_horizontal)
+                       .with("median_settled_s", number_or_null(r.median_settled_s))
+                       .with("max_settled_s", number_or_null(r.max_settled_s))
+                       .with("never_settled", r.never_settled));
+  }
+  return json;
+}
+
+const char* truth_name(DriftTruth truth) {
+  return truth == DriftTruth::reference ? "reference" : "withheld_fixes";
+}
+
+Json runs_json(const std::vector<ExperimentResult>& results) {
+  Json json = Json::array();
+  for (const ExperimentResult& r : results) {
+    json.push_back(Object()
+                       .with("recording", r.recording)
+                       .with("imu", r.imu)
+                       .with("method", r.method)
+                       .with("shift_s", r.shift_s)
+                       .with("truth", truth_name(r.run.truth))
+                       .with("fixes_span_s", seconds_between(r.run.first_fix_ns, r.run.last_fix_ns))
+                       .with("outages", r.run.drifts.size())
+                       .with("scheduled_outages", r.run.scheduled)
+                       .with("cpu_s", r.run.cpu_s));
+  }
+  return json;
+}
+
+std::string metrics_text(const EvaluationSummary& summary, const Provenance& origin) {
+  Json json;
+  json["methods"] = methods_json(summary.overall(), summary.overall().front().group);
+  Json rows = Json::object();
+  for (const MethodOutages& row : summary.rows()) {
+    if (!rows.contains(row.group)) rows[row.group] = methods_json(summary.rows(), row.group);
+  }
+  json[summary.row_header() == "IMU" ? "imus" : "recordings"] = rows;
+  json["comparisons"] = comparisons_json(summary.rows());
+  json["distances"] = distances_json(summary.distances());
+  json["normalized_drift"] = normalized_json(summary.normalized());
+  json["after_return"] = returns_json(summary.returns());
+  json["runs"] = runs_json(summary.results());
+  json["interval"] = "95 % bootstrap over outages";
+  json["command"] = origin.command_line;
+  json["version"] = origin.version;
+  json["config"] = origin.config;
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+void write_table(const TextTable& table, const std::filesystem::path& folder,
+                 const std::string& name) {
+  write_text_file(folder / (name + ".csv"), to_csv(table));
+  write_text_file(folder / (name + ".md"), to_markdown(table));
+}
+
+}  // namespace
+
+void write_evaluation(const EvaluationSummary& summary, const Provenance& origin,
+                      const std::filesystem::path& folder) {
+  const TextTable drifts =
+      drift_record_table(drift_records(summary.results()), default_drift_marks_s());
+  write_text_file(folder / "drift.csv", to_csv(drifts));
+  write_text_file(folder / "metrics.json", metrics_text(summary, origin));
+  if (!origin.config.empty()) write_text_file(folder / "config.yaml", origin.config);
+  std::filesystem::create_directories(folder / "tables");
+  write_table(summary.rms_table(), folder / "tables", "table_iii");
+  write_table(summary.difference_table(), folder / "tables", "table_iv");
+  write_table(summary.statistics_table(), folder / "tables", "statistics");
+  write_table(summary.normalized_table(), folder / "tables", "normalized_drift");
+  write_table(summary.return_table(), folder / "tables", "after_return");
+  if (summary.distances().empty()) return;
+  write_table(distance_table(summary.distances(), summary.row_header()), folder / "tables",
+              "distance");
+  write_table(distance_difference_table(summary.distances(), summary.row_header()),
+              folder / "tables", "distance_difference");
+}
+
+}  // namespace foucault::exports
