@@ -14,7 +14,7 @@
 namespace foucault::rawlog {
 
 int64_t stamp(const Record& record) {
-  return std::visit([](const auto& value) { return stamp(value); }, record);
+  return std::visit([](const auto& value) { return foucault::stamp(value); }, record);
 }
 
 namespace {

@@ -104,19 +104,25 @@ TEST_F(InitialStateTest, ErrorsAreThoseOfTheCovariance) {
   EXPECT_NEAR(mean_nees(true), 15, 0.9) << "a heading along the velocity";
 }
 
-/// Negative control: without what a level error shares with the accelerometers' bias.
-TEST_F(InitialStateTest, CorrelationsMatter) {
-  double sum = 0;
-  constexpr int kRuns = 100;
+/// A level errs by the accelerometers' bias: who knows that knows the level, and by nothing else.
+TEST_F(InitialStateTest, LevelErrorFollowsFromTheBias) {
+  noise_.accel_turn_on_sigma = 0.1;
+  double with = 0, without = 0;
+  constexpr int kRuns = 400;
   for (int run = 0; run < kRuns; ++run) {
-    const Epoch epoch = initial_state(draw_findings(true), noise_);
-    NodeMatrix P = epoch.covariance;
-    part(P, block::attitude, block::accel_bias).setZero();
-    part(P, block::accel_bias, block::attitude).setZero();
+    const Epoch epoch = initial_state(draw_findings(false), noise_);
     const NodeVector error = boxminus(true_, epoch);
-    sum += error.dot(P.ldlt().solve(error));
+    const Matrix3d P_ab = part(epoch.covariance, block::attitude, block::accel_bias);
+    const Matrix3d P_bb = epoch.covariance_of(block::accel_bias);
+    const Matrix3d gain = P_bb.ldlt().solve(P_ab.transpose()).transpose();
+    const Matrix3d left = epoch.covariance_of(block::attitude) - gain * P_ab.transpose();
+    const Vector3d a = part(error, block::attitude);
+    const Vector3d unexplained = a - gain * part(error, block::accel_bias);
+    with += unexplained.dot(left.ldlt().solve(unexplained));
+    without += a.dot(left.ldlt().solve(a));
   }
-  EXPECT_GT(std::abs(sum / kRuns - 15), 3);
+  EXPECT_NEAR(with / kRuns, 3, 0.4);  // chi-square of 3, 99.9 %
+  EXPECT_GT(without / kRuns, 10);
 }
 
 TEST_F(InitialStateTest, AGyroBiasBeyondItsPriorIsBelieved) {

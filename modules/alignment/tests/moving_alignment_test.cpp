@@ -19,7 +19,9 @@ const Vector3d kVelocity(10, -4, 0.2), kAcceleration(0.5, 0.8, -0.1);
 std::deque<GnssFix> fixes_of(double sigma, unsigned seed, bool with_velocity) {
   std::mt19937 rng{seed};
   std::normal_distribution<double> normal;
-  const auto noise = [&](double s) { return Vector3d(normal(rng), normal(rng), normal(rng)) * s; };
+  const auto noise = [&](double s) -> Vector3d {
+    return s * Vector3d(normal(rng), normal(rng), normal(rng));
+  };
   std::deque<GnssFix> fixes;
   for (int t = 0; t <= 6; ++t) {
     GnssFix fix;
