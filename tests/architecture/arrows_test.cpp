@@ -28,9 +28,15 @@ const std::map<std::string, Names> kArrows = {
     {"diagnosis", {"core", "geodesy", "state", "imu", "measurement"}},
     {"navigation", {"core", "geodesy", "state", "imu", "measurement", "alignment", "diagnosis"}},
     {"simulation", {"core", "geodesy", "state", "imu"}},
-    {"laboratory", {"core", "geodesy", "state", "imu", "preintegration", "simulation"}},
     {"evaluation", {"core", "geodesy", "state"}},
+    {"export", {"core", "geodesy", "state", "evaluation"}},
+    {"tuning", {"core", "evaluation", "export"}},
+    {"laboratory",
+     {"core", "geodesy", "imu", "preintegration", "simulation", "evaluation", "export"}},
     {"rawlog", {"core", "geodesy", "state", "imu"}},
+    {"plot", {"core"}},
+    {"page", {"core", "plot"}},
+    {"content", {"core", "state", "plot", "page"}},
 };
 
 bool is_source(const fs::path& path) {
