@@ -17,8 +17,8 @@ namespace {
 
 constexpr double kForever = std::numeric_limits<double>::infinity();
 
-NavigationRunOptions run_options(const Settings& settings) {
-  NavigationRunOptions options;
+navigation::NavigationRunOptions run_options(const Settings& settings) {
+  navigation::NavigationRunOptions options;
   options.gnss = settings.gnss;
   options.gaps = settings.gaps;
   options.aids = settings.aids;
@@ -27,58 +27,64 @@ NavigationRunOptions run_options(const Settings& settings) {
   return options;
 }
 
-std::unique_ptr<Estimator> drive(std::unique_ptr<Navigator> navigator, const Settings& settings,
-                                 const Mounting& mounting, Sink& sink) {
-  Aligner aligner(settings.alignment, settings.imu.noise(), mounting, settings.calibrate.layout());
-  return std::make_unique<NavigationRun>(std::move(navigator), std::move(aligner),
-                                         run_options(settings), sink);
+std::unique_ptr<state::Estimator> drive(std::unique_ptr<measurement::Navigator> navigator,
+                                        const Settings& settings, const state::Mounting& mounting,
+                                        state::Sink& sink) {
+  alignment::Aligner aligner(settings.alignment, settings.imu.noise(), mounting,
+                             settings.calibrate.layout());
+  return std::make_unique<navigation::NavigationRun>(std::move(navigator), std::move(aligner),
+                                                     run_options(settings), sink);
 }
 
-std::unique_ptr<Navigator> window(PreintegrationModel model, const Settings& settings) {
-  return std::make_unique<WindowNavigator>(settings.fgo, model, settings.imu.noise(),
-                                           settings.calibrate.layout());
+std::unique_ptr<measurement::Navigator> window(preintegration::PreintegrationModel model,
+                                               const Settings& settings) {
+  return std::make_unique<fgo::WindowNavigator>(settings.fgo, model, settings.imu.noise(),
+                                                settings.calibrate.layout());
 }
 
-std::unique_ptr<Navigator> filter(const Settings& settings) {
-  return std::make_unique<EkfNavigator>(settings.imu.noise(), settings.calibrate.layout(),
-                                        settings.ekf);
+std::unique_ptr<measurement::Navigator> filter(const Settings& settings) {
+  return std::make_unique<ekf::EkfNavigator>(settings.imu.noise(), settings.calibrate.layout(),
+                                             settings.ekf);
 }
 
-template <PreintegrationModel model>
-std::unique_ptr<Estimator> make_window(const Settings& settings, const Mounting& mounting,
-                                       Sink& sink) {
+template <preintegration::PreintegrationModel model>
+std::unique_ptr<state::Estimator> make_window(const Settings& settings,
+                                              const state::Mounting& mounting, state::Sink& sink) {
   return drive(window(model, settings), settings, mounting, sink);
 }
 
-std::unique_ptr<Estimator> make_ekf(const Settings& settings, const Mounting& mounting,
-                                    Sink& sink) {
+std::unique_ptr<state::Estimator> make_ekf(const Settings& settings,
+                                           const state::Mounting& mounting, state::Sink& sink) {
   return drive(filter(settings), settings, mounting, sink);
 }
 
-std::unique_ptr<Estimator> make_rts(const Settings& settings, const Mounting& mounting,
-                                    Sink& sink) {
-  Aligner aligner(settings.alignment, settings.imu.noise(), mounting, settings.calibrate.layout());
-  return make_smoother(std::make_unique<RtsRecorder>(settings.imu.noise(),
-                                                     settings.calibrate.layout(), settings.ekf),
-                       std::move(aligner), run_options(settings), sink);
+std::unique_ptr<state::Estimator> make_rts(const Settings& settings,
+                                           const state::Mounting& mounting, state::Sink& sink) {
+  alignment::Aligner aligner(settings.alignment, settings.imu.noise(), mounting,
+                             settings.calibrate.layout());
+  return navigation::make_smoother(
+      std::make_unique<ekf::RtsRecorder>(settings.imu.noise(), settings.calibrate.layout(),
+                                         settings.ekf),
+      std::move(aligner), run_options(settings), sink);
 }
 
 /// The forward run of a batch.
-std::unique_ptr<Navigator> first_estimate(const Settings& settings) {
+std::unique_ptr<measurement::Navigator> first_estimate(const Settings& settings) {
   const std::string& name = settings.batch.start;
-  if (name == "refined") return window(PreintegrationModel::refined, settings);
-  if (name == "rough") return window(PreintegrationModel::rough, settings);
-  if (name == "full") return window(PreintegrationModel::full, settings);
+  if (name == "refined") return window(preintegration::PreintegrationModel::refined, settings);
+  if (name == "rough") return window(preintegration::PreintegrationModel::rough, settings);
+  if (name == "full") return window(preintegration::PreintegrationModel::full, settings);
   return filter(settings);
 }
 
-std::unique_ptr<Estimator> make_batch(const Settings& settings, const Mounting& mounting,
-                                      Sink& sink) {
-  Aligner aligner(settings.alignment, settings.imu.noise(), mounting, settings.calibrate.layout());
-  return make_smoother(
-      std::make_unique<BatchRecorder>(first_estimate(settings), settings.fgo,
-                                      settings.batch.preintegration_model(), settings.imu.noise(),
-                                      settings.calibrate.layout()),
+std::unique_ptr<state::Estimator> make_batch(const Settings& settings,
+                                             const state::Mounting& mounting, state::Sink& sink) {
+  alignment::Aligner aligner(settings.alignment, settings.imu.noise(), mounting,
+                             settings.calibrate.layout());
+  return navigation::make_smoother(
+      std::make_unique<fgo::BatchRecorder>(first_estimate(settings), settings.fgo,
+                                           settings.batch.preintegration_model(),
+                                           settings.imu.noise(), settings.calibrate.layout()),
       std::move(aligner), run_options(settings), sink);
 }
 
@@ -89,11 +95,11 @@ const std::vector<Method>& methods() {
       {"ekf", "error-state Kalman filter on a full mechanization (the paper's M0)", make_ekf,
        Stage::mechanize},
       {"refined", "factor graph, preintegration on a rotating Earth (the paper's M1)",
-       make_window<PreintegrationModel::refined>, Stage::preintegrate},
+       make_window<preintegration::PreintegrationModel::refined>, Stage::preintegrate},
       {"rough", "factor graph, the Earth's rotation neglected (M2)",
-       make_window<PreintegrationModel::rough>, Stage::preintegrate},
+       make_window<preintegration::PreintegrationModel::rough>, Stage::preintegrate},
       {"full", "refined with the gravity vector of each place: exact over any distance",
-       make_window<PreintegrationModel::full>, Stage::preintegrate},
+       make_window<preintegration::PreintegrationModel::full>, Stage::preintegrate},
       {"rts",
        "the filter forward, then a smoother backward: every epoch from all fixes "
        "(memory: 6 kB an epoch)",

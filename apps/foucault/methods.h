@@ -11,8 +11,9 @@
 /// The methods that `run` and `evaluate` know. A new one is a function and a line in methods.cpp.
 namespace foucault::app {
 
-using EstimatorFactory = std::unique_ptr<Estimator> (*)(const Settings& settings,
-                                                        const Mounting& mounting, Sink& sink);
+using EstimatorFactory = std::unique_ptr<state::Estimator> (*)(const Settings& settings,
+                                                               const state::Mounting& mounting,
+                                                               state::Sink& sink);
 
 struct Method {
   std::string name;

@@ -9,8 +9,8 @@ void OutputOptions::fields(ConfigFields& f) {
            "statistics in metrics.json begin this long after the first fix");
 }
 
-EpochRate OutputOptions::epoch_rate() const {
-  return rate == "imu" ? EpochRate::imu : EpochRate::epochs;
+navigation::EpochRate OutputOptions::epoch_rate() const {
+  return rate == "imu" ? navigation::EpochRate::imu : navigation::EpochRate::epochs;
 }
 
 void Settings::fields(ConfigFields& f) {

@@ -22,23 +22,23 @@ class OutputOptions : public Configurable {
   double statistics_from_s = 0;  ///< after the first fix; metrics leave out what comes before
 
   void fields(ConfigFields& f) override;
-  EpochRate epoch_rate() const;
+  navigation::EpochRate epoch_rate() const;
 };
 
 /// The configuration of the methods; every key has a default that suits a car.
 class Settings : public Configurable {
  public:
-  ImuOptions imu;
-  AlignmentOptions alignment;
-  GnssOptions gnss;
-  GapOptions gaps;
-  AidOptions aids;
-  CalibrateOptions calibrate;
-  FgoOptions fgo;
-  BatchOptions batch;
-  EkfOptions ekf;
-  RawlogOptions rawlog;
-  OutageOptions outages;  ///< for evaluate and tune
+  imu::ImuOptions imu;
+  alignment::AlignmentOptions alignment;
+  diagnosis::GnssOptions gnss;
+  navigation::GapOptions gaps;
+  measurement::AidOptions aids;
+  state::CalibrateOptions calibrate;
+  fgo::FgoOptions fgo;
+  fgo::BatchOptions batch;
+  ekf::EkfOptions ekf;
+  rawlog::RawlogOptions rawlog;
+  evaluation::OutageOptions outages;  ///< for evaluate and tune
   OutputOptions output;
 
   void fields(ConfigFields& f) override;

@@ -152,7 +152,7 @@ class PositionColumns {
   std::array<size_t, 3> columns_;
   double to_radians_;
   double height_offset_;
-  std::optional<LocalFrame> frame_;
+  std::optional<geodesy::LocalFrame> frame_;
 };
 
 /// Velocities north, east, down, from three columns.
@@ -198,13 +198,13 @@ class ImuReader : public RecordReader {
 
   std::optional<Record> next() override {
     if (pending_) {
-      const ImuSample sample = *pending_;
+      const imu::ImuSample sample = *pending_;
       pending_.reset();
       return sample;
     }
     const Row* row = table_.next();
     if (row == nullptr) return std::nullopt;
-    const ImuSample sample = parse(*row);
+    const imu::ImuSample sample = parse(*row);
     if (!wheel_speed_) return sample;
     const double speed = row->number(*wheel_speed_);
     pending_ = sample;
@@ -212,9 +212,9 @@ class ImuReader : public RecordReader {
   }
 
  private:
-  ImuSample parse(const Row& row) {
+  imu::ImuSample parse(const Row& row) {
     columns_.check_width(row);
-    ImuSample sample;
+    imu::ImuSample sample;
     sample.gyro_b = vector(row, gyro_) * gyro_scale_;
     sample.accel_b = vector(row, accel_) * accel_scale_;
     if (wheel_speed_) row.number(*wheel_speed_);
@@ -235,8 +235,8 @@ class ImuReader : public RecordReader {
   double accel_scale_;
   std::optional<size_t> wheel_speed_;
   StampOrder order_;
-  ImuSample last_;
-  std::optional<ImuSample> pending_;
+  imu::ImuSample last_;
+  std::optional<imu::ImuSample> pending_;
 };
 
 // GNSS ------------------------------------------------------------------------------------------

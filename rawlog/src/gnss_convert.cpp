@@ -185,12 +185,12 @@ GnssFix fix_of_pzs(const gnss::Message_TOPCON_PZS& pzs) {
 
 void add_pzs_position_covariance(const gnss::Message_TOPCON_PZS& pzs, GnssFix& fix) {
   if (!pzs.hasPosCov) return;
-  fix.position_covariance =
-      ned_of_ecef(pzs.pos_covariance, wgs84::R_e_n(fix.antenna.latitude, fix.antenna.longitude));
+  fix.position_covariance = ned_of_ecef(
+      pzs.pos_covariance, geodesy::wgs84::R_e_n(fix.antenna.latitude, fix.antenna.longitude));
 }
 
 void add_pzs_velocity(const gnss::Message_TOPCON_PZS& pzs, GnssFix& fix) {
-  const Eigen::Matrix3d R_e_n = wgs84::R_e_n(fix.antenna.latitude, fix.antenna.longitude);
+  const Eigen::Matrix3d R_e_n = geodesy::wgs84::R_e_n(fix.antenna.latitude, fix.antenna.longitude);
   const Eigen::Vector3d v_e(pzs.cartesian_vx, pzs.cartesian_vy, pzs.cartesian_vz);
   fix.velocity_n = R_e_n.transpose() * v_e;
   fix.velocity_covariance = pzs.hasVelCov
@@ -203,8 +203,8 @@ bool is_diagonal(const Eigen::Matrix3d& matrix) {
 }
 
 gnss::Message_TOPCON_PZS pzs_of(const GnssFix& fix) {
-  const Eigen::Matrix3d R_e_n = wgs84::R_e_n(fix.antenna.latitude, fix.antenna.longitude);
-  const Eigen::Vector3d p_e = wgs84::geodetic_to_ecef(fix.antenna);
+  const Eigen::Matrix3d R_e_n = geodesy::wgs84::R_e_n(fix.antenna.latitude, fix.antenna.longitude);
+  const Eigen::Vector3d p_e = geodesy::wgs84::geodetic_to_ecef(fix.antenna);
   gnss::Message_TOPCON_PZS pzs;
   pzs.latitude_degrees = fix.antenna.latitude / kDegree;
   pzs.longitude_degrees = fix.antenna.longitude / kDegree;

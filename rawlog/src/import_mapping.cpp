@@ -88,7 +88,7 @@ void ImuMapping::fields(ConfigFields& f) {
             "roll, pitch, heading of the sensor, on those axes, in the vehicle [deg]");
 }
 
-Mounting ImuMapping::mounting() const {
+state::Mounting ImuMapping::mounting() const {
   const Eigen::Vector3d rpy = mounting_rpy_deg * kDegree;
   const Eigen::Quaterniond axes_turn(axes_matrix(axes));
   return {(so3::from_euler({rpy.x(), rpy.y(), rpy.z()}) * axes_turn).normalized()};

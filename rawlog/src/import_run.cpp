@@ -70,7 +70,8 @@ class Input {
 /// Finishing touches and statistics on the way to the writer.
 class Output {
  public:
-  Output(const std::string& path, const Mounting& mounting, const Eigen::Vector3d& lever_arm_v)
+  Output(const std::string& path, const state::Mounting& mounting,
+         const Eigen::Vector3d& lever_arm_v)
       : writer_(path, mounting), p_b_a_(mounting.q_v_b.conjugate() * lever_arm_v) {
     summary_.lever_arm_v = lever_arm_v;
   }

@@ -36,7 +36,7 @@ struct ImportInputs {
   std::unique_ptr<RecordReader> gnss;
   std::unique_ptr<RecordReader> reference;  ///< may be null
   std::string mapping;                      ///< its file, if there is one
-  Mounting mounting;
+  state::Mounting mounting;
   Eigen::Vector3d lever_arm_v = Eigen::Vector3d::Zero();  ///< IMU to antenna [m]
 };
 

@@ -75,7 +75,7 @@ mrpt::poses::CPose3D to_mrpt(const SensorPose& pose) {
 
 Eigen::Quaterniond flip_both(const Eigen::Quaterniond& q) { return {q.w(), q.x(), -q.y(), -q.z()}; }
 
-void encode_imu(const ImuSample& sample, mrpt::obs::CObservationIMU& imu) {
+void encode_imu(const imu::ImuSample& sample, mrpt::obs::CObservationIMU& imu) {
   using namespace mrpt::obs;  // the names of the indices: angular rates are stored yaw first
   imu.timestamp = to_mrpt(sample.t_ns);
   imu.set(IMU_WX, sample.gyro_b.x());
@@ -89,7 +89,7 @@ void encode_imu(const ImuSample& sample, mrpt::obs::CObservationIMU& imu) {
 ReferencePose decode_reference(const mrpt::obs::CObservationRobotPose& observation,
                                const Geodetic& origin, int64_t t_ns) {
   const mrpt::poses::CPose3D& mean = observation.pose.mean;
-  const LocalFrame frame(origin);
+  const geodesy::LocalFrame frame(origin);
   const Eigen::Vector3d p_w(mean.y(), mean.x(), -mean.z());
   ReferencePose pose;
   pose.t_ns = t_ns;
@@ -111,7 +111,8 @@ ReferencePose moved_to_imu(const ReferencePose& pose, const SensorPose& from,
   const Eigen::Quaterniond q_v_r = from.q_v_s * kHalfTurn;
   moved.q_n_v = (*pose.q_n_v * q_v_r.conjugate()).normalized();
   const Eigen::Vector3d arm_n = *moved.q_n_v * (p_v_imu - from.p_v_s);
-  if (arm_n.squaredNorm() > 0) moved.position = LocalFrame(pose.position).to_geodetic(arm_n);
+  if (arm_n.squaredNorm() > 0)
+    moved.position = geodesy::LocalFrame(pose.position).to_geodetic(arm_n);
   return moved;
 }
 

@@ -37,7 +37,7 @@ mrpt::poses::CPose3D to_mrpt(const SensorPose& pose);
 /// forward-right-down counterparts (and back: it is its own inverse).
 Eigen::Quaterniond flip_both(const Eigen::Quaterniond& q);
 
-void encode_imu(const ImuSample& sample, mrpt::obs::CObservationIMU& imu);
+void encode_imu(const imu::ImuSample& sample, mrpt::obs::CObservationIMU& imu);
 
 /// The position that a GPS record holds, and its velocity if there is one, without lever arm; none
 /// if it holds no position.

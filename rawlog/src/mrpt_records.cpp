@@ -140,13 +140,13 @@ class ImuValues {
   size_t value_size_;
 };
 
-std::optional<ImuSample> sample_of(const ImuValues& values, bool swapped_rates) {
+std::optional<imu::ImuSample> sample_of(const ImuValues& values, bool swapped_rates) {
   using namespace mrpt::obs;
   constexpr std::array<size_t, 6> kNeeded{IMU_X_ACC, IMU_Y_ACC, IMU_Z_ACC, IMU_WX, IMU_WY, IMU_WZ};
   for (const size_t index : kNeeded) {
     if (!values.has(index)) return std::nullopt;
   }
-  ImuSample sample;
+  imu::ImuSample sample;
   sample.gyro_b = {values.get(swapped_rates ? IMU_WZ : IMU_WX), values.get(IMU_WY),
                    values.get(swapped_rates ? IMU_WX : IMU_WZ)};
   sample.accel_b = {values.get(IMU_X_ACC), values.get(IMU_Y_ACC), values.get(IMU_Z_ACC)};

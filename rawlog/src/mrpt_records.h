@@ -51,8 +51,8 @@ const unsigned char* find_end_of_object(const unsigned char* from, Bytes bytes);
 struct ImuRecord {
   std::optional<int64_t> t_ns;
   std::string_view label;
-  std::optional<ImuSample> sample;  ///< none without gyroscope or accelerometer
-  Bytes pose;                       ///< the object sensorPose
+  std::optional<imu::ImuSample> sample;  ///< none without gyroscope or accelerometer
+  Bytes pose;                            ///< the object sensorPose
 };
 
 /// sensorPose of the record.

@@ -118,7 +118,8 @@ class StreamStatistics {
     if (info_.type != "CObservationIMU") return;
     recent_.push_back(t_ns);
     if (recent_.size() < kLookedAt) return;
-    if (const std::optional<BurstPattern> pattern = burst_pattern(recent_)) bursts_ = pattern;
+    if (const std::optional<imu::BurstPattern> pattern = imu::burst_pattern(recent_))
+      bursts_ = pattern;
     recent_.clear();
   }
 
@@ -138,7 +139,7 @@ class StreamStatistics {
   Intervals intervals_;
   LongestIntervals longest_;
   std::vector<int64_t> recent_;
-  std::optional<BurstPattern> bursts_;
+  std::optional<imu::BurstPattern> bursts_;
   std::optional<int64_t> last_ns_;
 };
 
@@ -190,7 +191,7 @@ class Collector {
     if (!imu_pose_) {
       imu_pose_ = rawlog::from_mrpt(rawlog::pose_of(imu));
       info_.imu_label = imu.label;
-      info_.mounting = Mounting{imu_pose_->q_v_s};
+      info_.mounting = state::Mounting{imu_pose_->q_v_s};
     }
     if (imu.sample->gyro_b.allFinite() && imu.sample->accel_b.allFinite()) return;
     if (info_.imu_not_finite++ == 0) info_.first_imu_not_finite_ns = imu.t_ns.value_or(0);

@@ -68,7 +68,7 @@ bool velocity_finite(const GnssFix& fix) {
   return fix.velocity_n->allFinite() && fix.velocity_covariance.allFinite();
 }
 
-bool finite(const ImuSample& sample) {
+bool finite(const imu::ImuSample& sample) {
   return sample.gyro_b.allFinite() && sample.accel_b.allFinite();
 }
 
@@ -158,7 +158,7 @@ struct Span {
   }
 };
 
-bool same(const ImuSample& a, const ImuSample& b) {
+bool same(const imu::ImuSample& a, const imu::ImuSample& b) {
   return a.t_ns == b.t_ns && a.gyro_b == b.gyro_b && a.accel_b == b.accel_b;
 }
 
@@ -166,7 +166,7 @@ bool same(const ImuSample& a, const ImuSample& b) {
 
 class RawlogSource::Impl {
  public:
-  Impl(const std::string& path, SampleKind samples, const RawlogOptions& options)
+  Impl(const std::string& path, imu::SampleKind samples, const RawlogOptions& options)
       : path_(path),
         options_(options),
         reorder_ns_(nanoseconds(options.reorder_s)),
@@ -181,9 +181,9 @@ class RawlogSource::Impl {
     return take_earliest();
   }
 
-  std::vector<Notice> notices() const;
+  std::vector<state::Notice> notices() const;
 
-  const Mounting& mounting() const { return mounting_; }
+  const state::Mounting& mounting() const { return mounting_; }
   const Eigen::Vector3d& lever_arm() const { return lever_arm_; }
   const Overview& overview() const { return overview_; }
   const SourceCounts& counts() const { return counts_; }
@@ -203,10 +203,10 @@ class RawlogSource::Impl {
   void read_one();
   void dispatch(const LoggedObservation& logged, int64_t t_ns);
   void take_imu(const rawlog::ImuRecord& imu, int64_t record, int64_t t_ns);
-  void take_sample(const ImuSample& sample, int64_t record);
-  void put_in_order(const ImuSample& sample, int64_t record);
+  void take_sample(const imu::ImuSample& sample, int64_t record);
+  void put_in_order(const imu::ImuSample& sample, int64_t record);
   void convert_until(int64_t t_ns);
-  void convert(const ImuSample& sample, int64_t stamp_ns);
+  void convert(const imu::ImuSample& sample, int64_t stamp_ns);
   void take_gps(const mrpt::obs::CObservationGPS& gps, int64_t t_ns);
   void take_reference(const ReferencePose& pose, const mrpt::poses::CPose3D& sensor_pose,
                       std::string_view type);
@@ -225,22 +225,22 @@ class RawlogSource::Impl {
   RawlogOptions options_;
   int64_t reorder_ns_;
   Overview overview_;
-  Mounting mounting_;
+  state::Mounting mounting_;
   Eigen::Vector3d lever_arm_;
   rawlog::RawlogStream stream_;
-  Incrementer incrementer_;
+  imu::Incrementer incrementer_;
   SourceCounts counts_;
 
-  std::optional<ImuSample> ahead_;  ///< far after the one before it; the next one tells
-  std::deque<ImuSample> samples_;   ///< by stamp; others may still come between them
-  BurstStamps even_stamps_;
-  std::optional<ImuSample> last_sample_;  ///< of those that are increments now, as recorded
-  std::optional<int64_t> last_stamp_ns_;  ///< its stamp made even
+  std::optional<imu::ImuSample> ahead_;  ///< far after the one before it; the next one tells
+  std::deque<imu::ImuSample> samples_;   ///< by stamp; others may still come between them
+  imu::BurstStamps even_stamps_;
+  std::optional<imu::ImuSample> last_sample_;  ///< of those that are increments now, as recorded
+  std::optional<int64_t> last_stamp_ns_;       ///< its stamp made even
   int backward_in_a_row_ = 0;
   std::deque<ImuIncrement> increments_;
   std::multimap<int64_t, Measurement> others_;
   Eigen::Vector3d reference_arm_v_ = Eigen::Vector3d::Zero();  ///< reference to IMU
-  RecentRates rates_{kLeverArmRateMemory};                     ///< of what was released
+  imu::RecentRates rates_{imu::kLeverArmRateMemory};           ///< of what was released
   int64_t newest_imu_ns_ = std::numeric_limits<int64_t>::min();
   int64_t released_ns_ = std::numeric_limits<int64_t>::min();
   int64_t released_increment_ns_ = std::numeric_limits<int64_t>::min();
@@ -318,15 +318,15 @@ void RawlogSource::Impl::dispatch(const LoggedObservation& logged, int64_t t_ns)
 void RawlogSource::Impl::take_imu(const rawlog::ImuRecord& imu, int64_t record, int64_t t_ns) {
   if (imu.label != overview_.imu_label) return skip(kImu, "another label");
   if (!imu.sample) return skip(kImu, "no gyroscope or no accelerometer");
-  ImuSample sample = *imu.sample;
+  imu::ImuSample sample = *imu.sample;
   sample.t_ns = t_ns;
   if (!finite(sample)) return skip_noted(kImu, kNotFinite, t_ns);
   take_sample(sample, record);
 }
 
 /// A stamp far ahead is a hole if the next goes on from there, else a slip of the clock.
-void RawlogSource::Impl::take_sample(const ImuSample& sample, int64_t record) {
-  if (const std::optional<ImuSample> ahead = std::exchange(ahead_, std::nullopt)) {
+void RawlogSource::Impl::take_sample(const imu::ImuSample& sample, int64_t record) {
+  if (const std::optional<imu::ImuSample> ahead = std::exchange(ahead_, std::nullopt)) {
     if (sample.t_ns >= ahead->t_ns) {
       put_in_order(*ahead, record);
     } else {
@@ -342,7 +342,7 @@ void RawlogSource::Impl::take_sample(const ImuSample& sample, int64_t record) {
   }
 }
 
-void RawlogSource::Impl::put_in_order(const ImuSample& sample, int64_t record) {
+void RawlogSource::Impl::put_in_order(const imu::ImuSample& sample, int64_t record) {
   if (last_sample_ && sample.t_ns <= last_sample_->t_ns) {
     if (same(sample, *last_sample_)) {
       ++counts_.imu_duplicates;
@@ -377,14 +377,14 @@ void RawlogSource::Impl::convert_until(int64_t t_ns) {
   }
 }
 
-void RawlogSource::Impl::convert(const ImuSample& sample, int64_t stamp_ns) {
+void RawlogSource::Impl::convert(const imu::ImuSample& sample, int64_t stamp_ns) {
   last_sample_ = sample;
   if (last_stamp_ns_ && stamp_ns <= *last_stamp_ns_) {
     --counts_.imu_samples;
     return skip_noted(kImu, "stamp comes twice", stamp_ns);
   }
   last_stamp_ns_ = stamp_ns;
-  ImuSample even = sample;
+  imu::ImuSample even = sample;
   even.t_ns = stamp_ns;
   if (const std::optional<ImuIncrement> increment = incrementer_.add(even)) {
     increments_.push_back(*increment);
@@ -497,53 +497,53 @@ void RawlogSource::Impl::fail(int64_t record, int64_t t_ns, const std::string& w
   throw DataError(fmt::format("'{}': record {} at {}: {}", path_, record, utc_text(t_ns), what));
 }
 
-std::vector<Notice> RawlogSource::Impl::notices() const {
-  std::vector<Notice> notices;
+std::vector<state::Notice> RawlogSource::Impl::notices() const {
+  std::vector<state::Notice> notices;
   if (counts_.late > 0) {
-    notices.push_back({*first_late_ns_, NoticeKind::skipped,
+    notices.push_back({*first_late_ns_, state::NoticeKind::skipped,
                        fmt::format("{} records came more than {:g} s late and were left out, the "
                                    "first of {}",
                                    counts_.late, options_.reorder_s, utc_text(*first_late_ns_))});
   }
   const int64_t begin_ns = counts_.imu_samples > 0 ? imu_span_.first_ns : 0;
   if (counts_.imu_duplicates > 0) {
-    notices.push_back({begin_ns, NoticeKind::skipped,
+    notices.push_back({begin_ns, state::NoticeKind::skipped,
                        fmt::format("{} IMU samples repeat the one before them and were left out",
                                    counts_.imu_duplicates)});
   }
   if (counts_.imu_reordered > 0) {
     notices.push_back(
-        {begin_ns, NoticeKind::skipped,
+        {begin_ns, state::NoticeKind::skipped,
          fmt::format("{} IMU samples came after later ones and were put in order by stamp",
                      counts_.imu_reordered)});
   }
   if (const std::optional<std::string> bursts = even_stamps_.summary()) {
-    notices.push_back({even_stamps_.first_ns(), NoticeKind::skipped, *bursts});
+    notices.push_back({even_stamps_.first_ns(), state::NoticeKind::skipped, *bursts});
   }
   for (const auto& [name, count] : counts_.skipped) {
     const auto first = first_skipped_ns_.find(name);
     const bool known = first != first_skipped_ns_.end();
     notices.push_back(
-        {known ? first->second : begin_ns, NoticeKind::skipped,
+        {known ? first->second : begin_ns, state::NoticeKind::skipped,
          fmt::format("{} x {} not used{}", count, name, known ? ", the first here" : "")});
   }
   return notices;
 }
 
-RawlogSource::RawlogSource(const std::string& path, SampleKind samples,
+RawlogSource::RawlogSource(const std::string& path, imu::SampleKind samples,
                            const RawlogOptions& options)
     : impl_(std::make_unique<Impl>(path, samples, options)) {}
 RawlogSource::~RawlogSource() = default;
 RawlogSource::RawlogSource(RawlogSource&&) noexcept = default;
 
 std::optional<Measurement> RawlogSource::next() { return impl_->next(); }
-const Mounting& RawlogSource::mounting() const { return impl_->mounting(); }
+const state::Mounting& RawlogSource::mounting() const { return impl_->mounting(); }
 double RawlogSource::progress() const { return impl_->progress(); }
 const Eigen::Vector3d& RawlogSource::lever_arm() const { return impl_->lever_arm(); }
 const std::string& RawlogSource::imu_label() const { return impl_->overview().imu_label; }
 const std::string& RawlogSource::gnss_label() const { return impl_->overview().gnss_label; }
 const SourceCounts& RawlogSource::counts() const { return impl_->counts(); }
-std::vector<Notice> RawlogSource::notices() const { return impl_->notices(); }
+std::vector<state::Notice> RawlogSource::notices() const { return impl_->notices(); }
 const std::optional<std::string>& RawlogSource::damage() const { return impl_->damage(); }
 
 }  // namespace foucault::rawlog

@@ -33,7 +33,7 @@ void require_stamp(int64_t t_ns) {
 }
 
 /// Increment over the interval between the stamps as MRPT holds them.
-ImuSample mean_rates(const ImuIncrement& increment) {
+imu::ImuSample mean_rates(const ImuIncrement& increment) {
   require_stamp(increment.t_begin_ns);
   require_stamp(increment.t_end_ns);
   const int64_t begin_ns = rawlog::quantized(increment.t_begin_ns);
@@ -51,7 +51,7 @@ ImuSample mean_rates(const ImuIncrement& increment) {
 
 class RawlogWriter::Impl {
  public:
-  Impl(const std::string& path, const Mounting& mounting, WrittenValues values)
+  Impl(const std::string& path, const state::Mounting& mounting, WrittenValues values)
       : file_(path), archive_(file_), mounting_(mounting), values_(values) {
     imu_.sensorLabel = "IMU";
     imu_.sensorPose = rawlog::to_mrpt({mounting.q_v_b, Eigen::Vector3d::Zero()});
@@ -61,7 +61,7 @@ class RawlogWriter::Impl {
     odometry_.hasVelocities = true;
   }
 
-  void write(const ImuSample& sample) {
+  void write(const imu::ImuSample& sample) {
     require_stamp(sample.t_ns);
     require(sample.gyro_b.allFinite() && sample.accel_b.allFinite(), "the IMU sample", sample.t_ns);
     rawlog::encode_imu(sample, imu_);
@@ -70,8 +70,8 @@ class RawlogWriter::Impl {
   }
 
   void write(const ImuIncrement& increment) {
-    const ImuSample sample = mean_rates(increment);
-    if (!imu_begun_) write(ImuSample{increment.t_begin_ns, sample.gyro_b, sample.accel_b});
+    const imu::ImuSample sample = mean_rates(increment);
+    if (!imu_begun_) write(imu::ImuSample{increment.t_begin_ns, sample.gyro_b, sample.accel_b});
     write(sample);
   }
 
@@ -126,7 +126,7 @@ class RawlogWriter::Impl {
 
   rawlog::PendingFile file_;
   rawlog::GzWriteArchive archive_;
-  Mounting mounting_;
+  state::Mounting mounting_;
   WrittenValues values_;
   mrpt::obs::CObservationIMU imu_;
   mrpt::obs::CObservationGPS gnss_;
@@ -136,12 +136,13 @@ class RawlogWriter::Impl {
   bool imu_begun_ = false;
 };
 
-RawlogWriter::RawlogWriter(const std::string& path, const Mounting& mounting, WrittenValues values)
+RawlogWriter::RawlogWriter(const std::string& path, const state::Mounting& mounting,
+                           WrittenValues values)
     : impl_(std::make_unique<Impl>(path, mounting, values)) {}
 RawlogWriter::~RawlogWriter() = default;
 RawlogWriter::RawlogWriter(RawlogWriter&&) noexcept = default;
 
-void RawlogWriter::write(const ImuSample& sample) { impl_->write(sample); }
+void RawlogWriter::write(const imu::ImuSample& sample) { impl_->write(sample); }
 void RawlogWriter::write(const ImuIncrement& increment) { impl_->write(increment); }
 void RawlogWriter::write(const GnssFix& fix) { impl_->write(fix); }
 void RawlogWriter::write(const ReferencePose& pose) { impl_->write(pose); }

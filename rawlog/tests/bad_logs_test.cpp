@@ -29,7 +29,7 @@ struct Reading {
   SourceCounts counts;
   int64_t measurements = 0;
   std::string damage;  ///< empty: none
-  std::vector<Notice> notices;
+  std::vector<state::Notice> notices;
 };
 
 Reading read_through(const std::string& path) {
@@ -123,9 +123,9 @@ TEST_F(BadLogs, UnknownLabel) {
   const std::string path = good_log<test::GzLog>("a.rawlog", 20);
   RawlogOptions options;
   options.imu_label = "other";
-  EXPECT_THAT(
-      error_of<DataError>([&] { RawlogSource source(path, SampleKind::interval_mean, options); }),
-      HasSubstr("labelled 'other'"));
+  EXPECT_THAT(error_of<DataError>(
+                  [&] { RawlogSource source(path, imu::SampleKind::interval_mean, options); }),
+              HasSubstr("labelled 'other'"));
 }
 
 TEST_F(BadLogs, TruncatedGzipSaysWhereAndGivesWhatCameBefore) {

@@ -23,7 +23,8 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 template <class Kind>
-std::vector<Kind> all(const std::string& path, SampleKind samples = SampleKind::interval_mean) {
+std::vector<Kind> all(const std::string& path,
+                      imu::SampleKind samples = imu::SampleKind::interval_mean) {
   RawlogSource source(path, samples);
   std::vector<Kind> found;
   while (const std::optional<Measurement> m = source.next()) {
@@ -346,7 +347,7 @@ TEST_F(Csv, LocalPositionsNeedAnOrigin) {
   EXPECT_THAT(error<UsageError>(yaml),
               AllOf(HasSubstr("local frame"), HasSubstr("gnss.origin latitude_deg")));
   run(yaml + "  origin: {latitude_deg: 49, longitude_deg: 8, height_m: 100}\n");
-  const LocalFrame frame({49 * kDegree, 8 * kDegree, 100});
+  const geodesy::LocalFrame frame({49 * kDegree, 8 * kDegree, 100});
   const GnssFix fix = all<GnssFix>(options_.out).at(0);
   EXPECT_LT((frame.to_local(fix.antenna) - Eigen::Vector3d(40, 30, -5)).norm(), 1e-6);
 }

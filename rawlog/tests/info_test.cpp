@@ -83,7 +83,7 @@ TEST(Info, KeepsTheLongestGapsInOrderOfTime) {
 
 TEST(Info, ReceiversMountingAndLeverArm) {
   const Scratch scratch;
-  const Mounting mounting{Eigen::Quaterniond(0, 0, 1, 0)};  // x backward, y right, z up
+  const state::Mounting mounting{Eigen::Quaterniond(0, 0, 1, 0)};  // x backward, y right, z up
   RawlogWriter writer(scratch.path("a.rawlog"), mounting);
   for (int64_t i = 0; i < 10; ++i) {
     GnssFix fix;
@@ -99,7 +99,7 @@ TEST(Info, ReceiversMountingAndLeverArm) {
     }
     fix.p_b_a = {-1, 0.5, 2};
     writer.write(fix);
-    writer.write(ImuSample{fix.t_ns, {0, 0, 0}, {0, 0, 9.8}});
+    writer.write(imu::ImuSample{fix.t_ns, {0, 0, 0}, {0, 0, 9.8}});
   }
   writer.write(ReferencePose{kBegin, {0.7, 0.1, 100}, std::nullopt, std::nullopt});
   writer.finish();

@@ -31,7 +31,7 @@ constexpr int64_t kBegin = 1'600'000'000'000'000'000;
 constexpr int64_t kMs = 1'000'000;
 
 template <class Kind>
-std::vector<Kind> all(Source& source) {
+std::vector<Kind> all(state::Source& source) {
   std::vector<Kind> found;
   while (const std::optional<Measurement> m = source.next()) {
     if (const Kind* one = std::get_if<Kind>(&*m)) found.push_back(*one);
@@ -63,7 +63,7 @@ class Observations : public ::testing::Test {
 
 TEST_F(Observations, ImuIndicesByNameNotByOrder) {
   const auto gps = gps_at(kBegin);
-  RawlogSource source(log_with({&gps}), SampleKind::interval_mean);
+  RawlogSource source(log_with({&gps}), imu::SampleKind::interval_mean);
   const std::vector<ImuIncrement> increments = all<ImuIncrement>(source);
   ASSERT_EQ(increments.size(), 2U);
   EXPECT_TRUE(increments[0].dtheta_b.isApprox(Eigen::Vector3d(1e-4, 2e-4, 3e-4), 1e-14));
@@ -254,7 +254,7 @@ TEST_F(Observations, InspvasOfASystemThatSitsElsewhereIsMovedToTheImu) {
   const so3::Euler euler = so3::to_euler(*pose.q_n_v);
   EXPECT_NEAR(euler.heading, kPi / 2, 1e-12);
   EXPECT_NEAR(pose.velocity_n->z(), -0.5, 1e-15);
-  const LocalFrame at_reference({47.5 * kDegree, 8.25 * kDegree, 300});
+  const geodesy::LocalFrame at_reference({47.5 * kDegree, 8.25 * kDegree, 300});
   EXPECT_LT((at_reference.to_local(pose.position) - Eigen::Vector3d(0, -2, 0)).norm(), 1e-6);
 }
 
@@ -316,7 +316,7 @@ TEST_F(Observations, RobotPoseIsEastNorthUpAtTheFirstFix) {
   const auto gps = gps_at(kBegin);
   RawlogSource source(log_with({&gps, &robot}));
   const ReferencePose pose = all<ReferencePose>(source).at(0);
-  const LocalFrame frame({47.5 * kDegree, 8.25 * kDegree, 447.5});
+  const geodesy::LocalFrame frame({47.5 * kDegree, 8.25 * kDegree, 447.5});
   EXPECT_LT((frame.to_local(pose.position) - Eigen::Vector3d(40, 30, -5)).norm(), 1e-6);
   const so3::Euler euler = so3::to_euler(*pose.q_n_v);
   EXPECT_NEAR(so3::wrap(euler.heading), 0, 1e-5);  // 50 m turn the vertical by 8e-6 rad
@@ -362,7 +362,7 @@ TEST_F(Observations, LabelsChooseTheSensors) {
   const auto other = gps_at(kBegin + 15 * kMs, "phone");
   RawlogOptions options;
   options.gnss_label = "phone";
-  RawlogSource source(log_with({&gps, &other}), SampleKind::interval_mean, options);
+  RawlogSource source(log_with({&gps, &other}), imu::SampleKind::interval_mean, options);
   EXPECT_EQ(source.gnss_label(), "phone");
   EXPECT_EQ(all<GnssFix>(source).at(0).t_ns, kBegin + 15 * kMs);
 }
@@ -422,7 +422,7 @@ TEST_F(Observations, SamplesOfOneStampAreSpreadInOrder) {
     EXPECT_NEAR(increment.dtheta_b.x(), 0.001 * i * 0.01, 1e-12);
   }
   EXPECT_EQ(source.counts().imu_samples, kSamples);
-  const std::vector<Notice> notices = source.notices();
+  const std::vector<state::Notice> notices = source.notices();
   ASSERT_EQ(notices.size(), 1U);
   EXPECT_THAT(notices[0].text, ::testing::HasSubstr("800 IMU samples are stamped on arrival, in "
                                                     "400 bursts of 2.0"));

@@ -48,7 +48,7 @@ class Recordings : public ::testing::Test {
   Scratch scratch_;
 };
 
-std::vector<Measurement> read_all(const std::string& path, SampleKind samples) {
+std::vector<Measurement> read_all(const std::string& path, imu::SampleKind samples) {
   RawlogSource source(path, samples);
   std::vector<Measurement> all;
   while (const std::optional<Measurement> m = source.next()) all.push_back(*m);
@@ -66,7 +66,7 @@ std::vector<Kind> only(const std::vector<Measurement>& all) {
 
 /// Mean specific force on the vehicle's axes over the first seconds [m/s^2].
 Eigen::Vector3d specific_force_v(const std::string& path, double seconds) {
-  RawlogSource source(path, SampleKind::instantaneous);
+  RawlogSource source(path, imu::SampleKind::instantaneous);
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   double time = 0;
   while (const std::optional<Measurement> m = source.next()) {
@@ -86,7 +86,8 @@ TEST_F(Recordings, RtkCar) {
   EXPECT_EQ(summary.gnss.written, 2197);
   EXPECT_EQ(summary.qualities.at(FixQuality::fixed_rtk), 2189);
   EXPECT_EQ(summary.qualities.at(FixQuality::float_rtk), 8);
-  const std::vector<GnssFix> fixes = only<GnssFix>(read_all(import.out, SampleKind::instantaneous));
+  const std::vector<GnssFix> fixes =
+      only<GnssFix>(read_all(import.out, imu::SampleKind::instantaneous));
   EXPECT_EQ(fixes.front().t_ns, gps_to_unix_ns(2374, 243258.499));
   EXPECT_NEAR(fixes.front().antenna.height, 1601.474 - 16.5, 1e-9);
   // At rest, with the small misalignment taken out: the car stands level to a degree.
@@ -100,8 +101,8 @@ TEST_F(Recordings, RtkCarThroughRtklibIsTheSame) {
   import_csv(import);
   const auto rtklib = options<RtklibImport>("rtk_car_drive0708_rtklib", "rtk_car_drive0708");
   EXPECT_EQ(import_rtklib(rtklib).gnss.written, 2197);
-  const auto a = only<GnssFix>(read_all(import.out, SampleKind::instantaneous));
-  const auto b = only<GnssFix>(read_all(rtklib.out, SampleKind::instantaneous));
+  const auto a = only<GnssFix>(read_all(import.out, imu::SampleKind::instantaneous));
+  const auto b = only<GnssFix>(read_all(rtklib.out, imu::SampleKind::instantaneous));
   ASSERT_EQ(a.size(), b.size());
   for (size_t i = 0; i < a.size(); ++i) {
     EXPECT_EQ(a[i].t_ns, b[i].t_ns);
@@ -151,7 +152,7 @@ TEST_F(Recordings, Kitti) {
   const ImportSummary summary = import_csv(import);
   EXPECT_EQ(summary.imu.written, 46968);
   EXPECT_EQ(summary.gnss.written, 470);
-  const auto all = read_all(import.out, SampleKind::instantaneous);
+  const auto all = read_all(import.out, imu::SampleKind::instantaneous);
   EXPECT_NEAR(only<GnssFix>(all).front().antenna.latitude / kDegree, 48.98, 0.01);
   EXPECT_NEAR(specific_force_v(import.out, 100).z(), -9.8, 0.2);
   // The hole of 1.92 s behind the first sample stays a hole.

@@ -27,7 +27,7 @@ struct Contents {
   std::vector<WheelSpeed> speeds;
 };
 
-Contents read_all(Source& source) {
+Contents read_all(state::Source& source) {
   Contents contents;
   while (const std::optional<Measurement> m = source.next()) {
     contents.all.push_back(*m);
@@ -75,7 +75,7 @@ GnssFix some_fix(int64_t t_ns) {
   return fix;
 }
 
-Mounting tilted_mounting() {
+state::Mounting tilted_mounting() {
   // x backward, y right, z up, then pitched and yawed: as consumer IMUs are glued into cars.
   const Eigen::Quaterniond backward_right_up(0, 0, 1, 0);
   return {so3::from_euler({0.01, -0.118, 0.093}) * backward_right_up};
@@ -114,14 +114,14 @@ TEST(RoundTrip, SamplesExactly) {
   const Scratch scratch;
   RawlogWriter writer(scratch.path("a.rawlog"));
   std::mt19937 rng{1};
-  std::vector<ImuSample> samples;
+  std::vector<imu::ImuSample> samples;
   for (int64_t i = 0; i < 20; ++i) {
     samples.push_back({kBegin + i * 10'000'000, random_vector(rng, 1), random_vector(rng, 10)});
     writer.write(samples.back());
   }
   writer.write(some_fix(kBegin));
   writer.finish();
-  RawlogSource source(scratch.path("a.rawlog"), SampleKind::instantaneous);
+  RawlogSource source(scratch.path("a.rawlog"), imu::SampleKind::instantaneous);
   const Contents read = read_all(source);
   ASSERT_EQ(read.increments.size(), 19U);
   for (int i = 0; i < 19; ++i) {
@@ -132,7 +132,7 @@ TEST(RoundTrip, SamplesExactly) {
 
 TEST(RoundTrip, MountingAndLeverArm) {
   const Scratch scratch;
-  const Mounting mounting = tilted_mounting();
+  const state::Mounting mounting = tilted_mounting();
   GnssFix fix = some_fix(kBegin + 500'000'000);
   fix.p_b_a = {0.3, -0.2, 1.1};
   RawlogWriter writer(scratch.path("a.rawlog"), mounting);
@@ -252,7 +252,7 @@ TEST(RoundTrip, MeasurementsComeInOrderAndIncrementsLast) {
   const Scratch scratch;
   RawlogWriter writer(scratch.path("a.rawlog"));
   for (int64_t i = 0; i <= 100; ++i) {
-    writer.write(ImuSample{kBegin + i * 10'000'000, {0, 0, 0}, {0, 0, -9.8}});
+    writer.write(imu::ImuSample{kBegin + i * 10'000'000, {0, 0, 0}, {0, 0, -9.8}});
   }
   for (const int64_t i : {30, 20, 60}) writer.write(some_fix(kBegin + i * 10'000'000));
   writer.write(WheelSpeed{kBegin + 200'000'000, 1});
@@ -274,7 +274,7 @@ TEST(Reorder, LateFixesArePutRightWithinTheBufferAndCountedBeyond) {
   RawlogWriter writer(scratch.path("a.rawlog"));
   for (int64_t i = 0; i <= 600; ++i) {
     const int64_t t_ns = kBegin + i * 10'000'000;
-    writer.write(ImuSample{t_ns, {0, 0, 0}, {0, 0, -9.8}});
+    writer.write(imu::ImuSample{t_ns, {0, 0, 0}, {0, 0, -9.8}});
     if (i == 300) writer.write(some_fix(t_ns - 1'500'000'000));
     if (i == 500) writer.write(some_fix(t_ns - 2'500'000'000));
   }
@@ -289,7 +289,7 @@ TEST(Reorder, LateFixesArePutRightWithinTheBufferAndCountedBeyond) {
 
   RawlogOptions patient;
   patient.reorder_s = 3;
-  RawlogSource second(scratch.path("a.rawlog"), SampleKind::interval_mean, patient);
+  RawlogSource second(scratch.path("a.rawlog"), imu::SampleKind::interval_mean, patient);
   EXPECT_EQ(read_all(second).fixes.size(), 2U);
   EXPECT_EQ(second.counts().late, 0);
 }
@@ -300,13 +300,13 @@ TEST(Reorder, AFixThatCanNoLongerPrecedeItsIncrementIsLate) {
   writer.write(some_fix(kBegin));
   for (int64_t i = 0; i <= 100; ++i) {
     const int64_t t_ns = kBegin + i * 10'000'000;
-    writer.write(ImuSample{t_ns, {0, 0, 0}, {0, 0, -9.8}});
+    writer.write(imu::ImuSample{t_ns, {0, 0, 0}, {0, 0, -9.8}});
     if (i == 50) writer.write(some_fix(t_ns));
   }
   writer.finish();
   RawlogOptions impatient;
   impatient.reorder_s = 0;
-  RawlogSource source(scratch.path("a.rawlog"), SampleKind::interval_mean, impatient);
+  RawlogSource source(scratch.path("a.rawlog"), imu::SampleKind::interval_mean, impatient);
   EXPECT_EQ(read_all(source).fixes.size(), 1U);
   EXPECT_EQ(source.counts().late, 1);
 }

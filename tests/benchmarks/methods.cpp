@@ -20,15 +20,17 @@ namespace {
 
 constexpr double kDuration = 400;  // [s]
 
-class EpochCounter : public Sink {
+class EpochCounter : public state::Sink {
  public:
-  void epoch(const Epoch&) override { ++epochs; }
+  void epoch(const state::Epoch&) override { ++epochs; }
   int64_t epochs = 0;
 };
 
-Aligner aligner(const Trip& trip) { return Aligner(AlignmentOptions{}, trip.noise, trip.mounting); }
+alignment::Aligner aligner(const Trip& trip) {
+  return alignment::Aligner(alignment::AlignmentOptions{}, trip.noise, trip.mounting);
+}
 
-void process(const Trip& trip, Estimator& estimator) {
+void process(const Trip& trip, state::Estimator& estimator) {
   for (const Measurement& measurement : trip.measurements) estimator.process(measurement);
   estimator.finish();
 }
@@ -46,9 +48,10 @@ void window(benchmark::State& state, double gnss_rate_hz) {
   EpochCounter counter;
   for ([[maybe_unused]] const auto _ : state) {
     counter.epochs = 0;
-    NavigationRun run(
-        std::make_unique<WindowNavigator>(FgoOptions{}, PreintegrationModel::refined, trip.noise),
-        aligner(trip), NavigationRunOptions{}, counter);
+    navigation::NavigationRun run(
+        std::make_unique<fgo::WindowNavigator>(
+            fgo::FgoOptions{}, preintegration::PreintegrationModel::refined, trip.noise),
+        aligner(trip), navigation::NavigationRunOptions{}, counter);
     Profile profile;
     process(trip, run);
     state.SetIterationTime(
@@ -61,8 +64,9 @@ void ekf(benchmark::State& state) {
   const Trip trip = simulated_trip(kDuration, 1);
   EpochCounter counter;
   for ([[maybe_unused]] const auto _ : state) {
-    NavigationRun run(std::make_unique<EkfNavigator>(trip.noise, Layout{}, EkfOptions{}),
-                      aligner(trip), NavigationRunOptions{}, counter);
+    navigation::NavigationRun run(
+        std::make_unique<ekf::EkfNavigator>(trip.noise, state::Layout{}, ekf::EkfOptions{}),
+        aligner(trip), navigation::NavigationRunOptions{}, counter);
     process(trip, run);
   }
   state.counters[kThings] = static_cast<double>(trip.samples);
@@ -73,11 +77,11 @@ void batch(benchmark::State& state) {
   EpochCounter counter;
   for ([[maybe_unused]] const auto _ : state) {
     counter.epochs = 0;
-    const std::unique_ptr<Estimator> smoother =
-        make_smoother(std::make_unique<BatchRecorder>(
-                          std::make_unique<EkfNavigator>(trip.noise, Layout{}, EkfOptions{}),
-                          FgoOptions{}, PreintegrationModel::full, trip.noise),
-                      aligner(trip), NavigationRunOptions{}, counter);
+    const std::unique_ptr<state::Estimator> smoother = navigation::make_smoother(
+        std::make_unique<fgo::BatchRecorder>(
+            std::make_unique<ekf::EkfNavigator>(trip.noise, state::Layout{}, ekf::EkfOptions{}),
+            fgo::FgoOptions{}, preintegration::PreintegrationModel::full, trip.noise),
+        aligner(trip), navigation::NavigationRunOptions{}, counter);
     for (const Measurement& measurement : trip.measurements) smoother->process(measurement);
     Profile profile;
     smoother->finish();

@@ -19,7 +19,7 @@ class TemporaryLog {
   explicit TemporaryLog(const Trip& trip)
       : path_(std::filesystem::temp_directory_path() /
               ("foucault-benchmark-" + std::to_string(getpid()) + ".rawlog")) {
-    RawlogWriter writer(path_.string(), trip.mounting);
+    rawlog::RawlogWriter writer(path_.string(), trip.mounting);
     for (const Measurement& measurement : trip.measurements) writer.write(measurement);
     writer.finish();
   }
@@ -41,7 +41,7 @@ void read(benchmark::State& state) {
   const TemporaryLog log(trip);
   int64_t records = 0;
   for ([[maybe_unused]] const auto _ : state) {
-    RawlogSource source(log.path());
+    rawlog::RawlogSource source(log.path());
     records = 0;
     while (source.next()) ++records;
   }

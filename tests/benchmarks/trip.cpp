@@ -9,13 +9,13 @@
 namespace foucault::benchmarks {
 
 Trip simulated_trip(double duration_s, double gnss_rate_hz) {
-  ScenarioOptions scenario;
+  simulation::ScenarioOptions scenario;
   scenario.duration_s = duration_s;
   scenario.gnss_rate_hz = gnss_rate_hz;
   scenario.seed = 7;
   Trip trip;
-  trip.noise = imu_preset("ADIS16465");
-  SimulatedSource source(scenario, trip.noise);
+  trip.noise = imu::imu_preset("ADIS16465");
+  simulation::SimulatedSource source(scenario, trip.noise);
   trip.mounting = source.mounting();
   while (std::optional<Measurement> measurement = source.next()) {
     if (std::holds_alternative<ImuIncrement>(*measurement)) ++trip.samples;

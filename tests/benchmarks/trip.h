@@ -10,8 +10,8 @@ namespace foucault::benchmarks {
 
 /// A simulated drive in a city with an ADIS16465 at 200 Hz, in memory.
 struct Trip {
-  ImuNoise noise;
-  Mounting mounting;
+  imu::ImuNoise noise;
+  state::Mounting mounting;
   std::vector<Measurement> measurements;
   int64_t samples = 0;
   int64_t fixes = 0;

@@ -40,11 +40,11 @@ class EveryKind : public Configurable {
 class Root : public Configurable {
  public:
   EveryKind every_kind;
-  ImuOptions imu;
-  AlignmentOptions alignment;
-  GnssOptions gnss;
-  GapOptions gaps;
-  RawlogOptions rawlog;
+  imu::ImuOptions imu;
+  alignment::AlignmentOptions alignment;
+  diagnosis::GnssOptions gnss;
+  navigation::GapOptions gaps;
+  rawlog::RawlogOptions rawlog;
 
   void fields(ConfigFields& f) override {
     f.section("every_kind", every_kind, "");

@@ -7,7 +7,7 @@ int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   using namespace foucault;
   using namespace foucault::fuzz;
   const std::vector<std::string_view> files = files_of(text_of(data, size), 4);
-  CsvImport import;
+  rawlog::CsvImport import;
   import.mapping = folder().write("mapping.yaml", files[0]);
   import.imu = folder().write("imu.csv", files[1]);
   import.gnss = folder().write("gnss.csv", files[2]);
@@ -15,7 +15,7 @@ int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   import.out = folder() / "out.rawlog";
   for (const bool skip_bad_rows : {false, true}) {
     import.skip_bad_rows = skip_bad_rows;
-    if (contained([&] { import_csv(import); })) read_own_rawlog(import.out);
+    if (contained([&] { rawlog::import_csv(import); })) read_own_rawlog(import.out);
   }
   return 0;
 }

@@ -7,7 +7,7 @@ int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   using namespace foucault;
   using namespace foucault::fuzz;
   const std::vector<std::string_view> files = files_of(text_of(data, size), 3);
-  I2navImport import;
+  rawlog::I2navImport import;
   import.imu = folder().write("imu.txt", files[0]);
   import.gnss = folder().write("gnss.pos", files[1]);
   if (!files[2].empty()) import.reference = folder().write("truth.nav", files[2]);
@@ -15,7 +15,7 @@ int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   import.out = folder() / "out.rawlog";
   for (const bool skip_bad_rows : {false, true}) {
     import.skip_bad_rows = skip_bad_rows;
-    if (contained([&] { import_i2nav(import); })) read_own_rawlog(import.out);
+    if (contained([&] { rawlog::import_i2nav(import); })) read_own_rawlog(import.out);
   }
   return 0;
 }

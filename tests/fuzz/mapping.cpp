@@ -6,12 +6,12 @@
 int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   using namespace foucault;
   using namespace foucault::fuzz;
-  ImportMapping mapping;
+  rawlog::ImportMapping mapping;
   const std::string text(text_of(data, size));
   if (!contained([&] { load_config_text(text, "mapping.yaml", mapping); })) return 0;
   contained([&] { mapping.imu.mounting(); });
   const std::string dumped = dump_config(mapping);
-  ImportMapping again;
+  rawlog::ImportMapping again;
   load_config_text(dumped, "again", again);
   require(dump_config(again) == dumped, "a mapping that is written and read");
   return 0;

@@ -30,8 +30,8 @@ bool finite(const Measurement& measurement) {
 }
 
 /// What a source gives out; true if the log is whole.
-bool read_measurements(const std::string& path, SampleKind samples) {
-  RawlogSource source(path, samples);
+bool read_measurements(const std::string& path, imu::SampleKind samples) {
+  rawlog::RawlogSource source(path, samples);
   int64_t last_ns = std::numeric_limits<int64_t>::min();
   while (const std::optional<Measurement> measurement = source.next()) {
     require(stamp(*measurement) >= last_ns, "measurements in order");
@@ -46,15 +46,15 @@ bool read_measurements(const std::string& path, SampleKind samples) {
 }  // namespace
 
 void read_rawlog(const std::string& path) {
-  contained([&] { read_rawlog_info(path); });
-  contained([&] { read_measurements(path, SampleKind::interval_mean); });
-  contained([&] { read_measurements(path, SampleKind::instantaneous); });
+  contained([&] { rawlog::read_rawlog_info(path); });
+  contained([&] { read_measurements(path, imu::SampleKind::interval_mean); });
+  contained([&] { read_measurements(path, imu::SampleKind::instantaneous); });
 }
 
 void read_own_rawlog(const std::string& path) {
-  contained([&] { require(!read_rawlog_info(path).damage, "what we write is whole"); });
+  contained([&] { require(!rawlog::read_rawlog_info(path).damage, "what we write is whole"); });
   contained([&] {
-    require(read_measurements(path, SampleKind::interval_mean), "what we write is whole");
+    require(read_measurements(path, imu::SampleKind::interval_mean), "what we write is whole");
   });
 }
 

@@ -15,7 +15,7 @@ imu:
                                                 "2200,100.00,0,0,0,0,0,-9.8\n"
                                                 "2200,100.01,0,0,0,0,0,-9.8\n"
                                                 "2200,100.02,0,0,0,0,0,-9.8\n");
-  RtklibImport import;
+  rawlog::RtklibImport import;
   import.mapping = mapping;
   import.imu = imu;
   import.gnss = folder().write("gnss.pos", text_of(data, size));
@@ -23,7 +23,7 @@ imu:
   import.out = folder() / "out.rawlog";
   for (const bool skip_bad_rows : {false, true}) {
     import.skip_bad_rows = skip_bad_rows;
-    if (contained([&] { import_rtklib(import); })) read_own_rawlog(import.out);
+    if (contained([&] { rawlog::import_rtklib(import); })) read_own_rawlog(import.out);
   }
   return 0;
 }

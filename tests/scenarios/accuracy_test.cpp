@@ -19,22 +19,25 @@
 namespace foucault {
 namespace {
 
-std::unique_ptr<Navigator> make_navigator(const std::string& method, const ImuNoise& noise) {
-  if (method == "ekf") return std::make_unique<EkfNavigator>(noise, Layout{}, EkfOptions{});
-  const std::map<std::string, PreintegrationModel> models{{"refined", PreintegrationModel::refined},
-                                                          {"full", PreintegrationModel::full},
-                                                          {"rough", PreintegrationModel::rough}};
-  return std::make_unique<WindowNavigator>(FgoOptions{}, models.at(method), noise);
+std::unique_ptr<measurement::Navigator> make_navigator(const std::string& method,
+                                                       const imu::ImuNoise& noise) {
+  if (method == "ekf")
+    return std::make_unique<ekf::EkfNavigator>(noise, state::Layout{}, ekf::EkfOptions{});
+  const std::map<std::string, preintegration::PreintegrationModel> models{
+      {"refined", preintegration::PreintegrationModel::refined},
+      {"full", preintegration::PreintegrationModel::full},
+      {"rough", preintegration::PreintegrationModel::rough}};
+  return std::make_unique<fgo::WindowNavigator>(fgo::FgoOptions{}, models.at(method), noise);
 }
 
 /// Metrics and worst epoch of a run.
-class Observer : public OutageRunObserver {
+class Observer : public evaluation::OutageRunObserver {
  public:
-  Observer(const Mounting& mounting, int64_t from_ns)
+  Observer(const state::Mounting& mounting, int64_t from_ns)
       : from_ns_(from_ns), metrics(mounting, from_ns) {}
-  void epoch(const Epoch& epoch) override { metrics.epoch(epoch); }
-  void fix(const FixResult& fix) override { metrics.fix(fix); }
-  void reference_error(const Epoch& epoch, const ReferenceError& error) override {
+  void epoch(const state::Epoch& epoch) override { metrics.epoch(epoch); }
+  void fix(const state::FixResult& fix) override { metrics.fix(fix); }
+  void reference_error(const state::Epoch& epoch, const state::ReferenceError& error) override {
     metrics.reference_error(epoch, error);
     last_error = error.position_n.norm();
     if (epoch.t_ns > from_ns_ && !std::isfinite(last_error)) ++not_finite;
@@ -44,13 +47,13 @@ class Observer : public OutageRunObserver {
   int64_t from_ns_;
 
  public:
-  RunMetricsCollector metrics;
+  evaluation::RunMetricsCollector metrics;
   double last_error = 0;
   int not_finite = 0;
 };
 
 struct Outcome {
-  RunMetrics metrics;
+  evaluation::RunMetrics metrics;
   double horizontal_drift_rms = 0;
   double vertical_drift_rms = 0;
   std::size_t outages = 0;
@@ -58,21 +61,24 @@ struct Outcome {
 };
 
 /// `settle_s`: start of the statistics after the start of the trip.
-Outcome run(const std::string& method, const ScenarioOptions& scenario, const ImuNoise& noise,
-            const OutageSchedule& schedule, double settle_s) {
-  auto source = std::make_unique<SimulatedSource>(scenario, noise);
+Outcome run(const std::string& method, const simulation::ScenarioOptions& scenario,
+            const imu::ImuNoise& noise, const evaluation::OutageSchedule& schedule,
+            double settle_s) {
+  auto source = std::make_unique<simulation::SimulatedSource>(scenario, noise);
   const int64_t from_ns =
       gps_to_unix_ns(static_cast<int>(scenario.gps_week), scenario.gps_sow_s + settle_s);
   Observer observer(source->mounting(), from_ns);
-  const EstimatorFactory factory = [&](const Mounting& mounting, Sink& sink) {
-    return std::make_unique<NavigationRun>(make_navigator(method, noise),
-                                           Aligner(AlignmentOptions{}, noise, mounting),
-                                           NavigationRunOptions{}, sink);
+  const evaluation::EstimatorFactory factory = [&](const state::Mounting& mounting,
+                                                   state::Sink& sink) {
+    return std::make_unique<navigation::NavigationRun>(
+        make_navigator(method, noise),
+        alignment::Aligner(alignment::AlignmentOptions{}, noise, mounting),
+        navigation::NavigationRunOptions{}, sink);
   };
-  const OutageRunResult result =
-      run_with_outages(std::move(source), schedule, factory, {}, &observer);
+  const evaluation::OutageRunResult result =
+      evaluation::run_with_outages(std::move(source), schedule, factory, {}, &observer);
   std::vector<double> horizontal, vertical;
-  for (const OutageDrift& drift : result.drifts) {
+  for (const evaluation::OutageDrift& drift : result.drifts) {
     horizontal.push_back(drift.maximum.horizontal);
     vertical.push_back(drift.maximum.vertical);
   }
@@ -80,16 +86,16 @@ Outcome run(const std::string& method, const ScenarioOptions& scenario, const Im
   out.metrics = observer.metrics.metrics();
   out.outages = horizontal.size();
   if (!horizontal.empty()) {
-    out.horizontal_drift_rms = root_mean_square(horizontal);
-    out.vertical_drift_rms = root_mean_square(vertical);
+    out.horizontal_drift_rms = evaluation::root_mean_square(horizontal);
+    out.vertical_drift_rms = evaluation::root_mean_square(vertical);
   }
   out.last_error = observer.last_error;
   EXPECT_EQ(observer.not_finite, 0);
   return out;
 }
 
-ScenarioOptions city(double duration_s, int64_t seed) {
-  ScenarioOptions scenario;
+simulation::ScenarioOptions city(double duration_s, int64_t seed) {
+  simulation::ScenarioOptions scenario;
   scenario.duration_s = duration_s;
   scenario.seed = seed;
   return scenario;
@@ -100,9 +106,10 @@ INSTANTIATE_TEST_SUITE_P(Methods, CityDrive, ::testing::Values("ekf", "refined",
 
 /// Two public programs reach 1.2 cm horizontally with this GNSS and this IMU.
 TEST_P(CityDrive, CentimetresAndHonestSigmasWithGnss) {
-  const Outcome out = run(GetParam(), city(600, 5), imu_preset("ADIS16465"), OutageSchedule(), 100);
+  const Outcome out = run(GetParam(), city(600, 5), imu::imu_preset("ADIS16465"),
+                          evaluation::OutageSchedule(), 100);
   ASSERT_TRUE(out.metrics.reference.has_value());
-  const ReferenceMetrics& errors = *out.metrics.reference;
+  const evaluation::ReferenceMetrics& errors = *out.metrics.reference;
   EXPECT_EQ(out.metrics.gnss.rejected, 0);
   EXPECT_LT(errors.horizontal_rmse, 0.014);
   EXPECT_LT(errors.vertical_rmse, 0.012);
@@ -113,13 +120,13 @@ TEST_P(CityDrive, CentimetresAndHonestSigmasWithGnss) {
 }
 
 TEST(Outages, FactorGraphsAreAsGoodAsTheEkfAndRoughIsNot) {
-  OutageOptions options;
+  evaluation::OutageOptions options;
   options.first_s = 200;
   options.period_s = 100;
-  const OutageSchedule schedule(options, 0);
+  const evaluation::OutageSchedule schedule(options, 0);
   std::map<std::string, Outcome> outcome;
   for (const char* method : {"ekf", "refined", "full", "rough"})
-    outcome[method] = run(method, city(1000, 9), imu_preset("ADIS16465"), schedule, 100);
+    outcome[method] = run(method, city(1000, 9), imu::imu_preset("ADIS16465"), schedule, 100);
   EXPECT_EQ(outcome["ekf"].outages, 8u);
   const double ekf = outcome["ekf"].horizontal_drift_rms;
   EXPECT_LT(ekf, 8);
@@ -135,27 +142,27 @@ TEST(Outages, FactorGraphsAreAsGoodAsTheEkfAndRoughIsNot) {
 
 struct Trouble {
   const char* name;
-  ScenarioOptions scenario;
+  simulation::ScenarioOptions scenario;
 };
 
-ScenarioOptions five_hertz() {
-  ScenarioOptions s = city(400, 3);
+simulation::ScenarioOptions five_hertz() {
+  simulation::ScenarioOptions s = city(400, 3);
   s.gnss_rate_hz = 5;
   return s;
 }
-ScenarioOptions off_the_second() {
-  ScenarioOptions s = city(400, 3);
+simulation::ScenarioOptions off_the_second() {
+  simulation::ScenarioOptions s = city(400, 3);
   s.gnss_phase_s = 0.3;
   return s;
 }
-ScenarioOptions imu_gap() {
-  ScenarioOptions s = city(400, 3);
+simulation::ScenarioOptions imu_gap() {
+  simulation::ScenarioOptions s = city(400, 3);
   s.imu_gap_start_s = {250};
   s.imu_gap_length_s = 3;
   return s;
 }
-ScenarioOptions degraded_gnss() {
-  ScenarioOptions s = city(400, 3);
+simulation::ScenarioOptions degraded_gnss() {
+  simulation::ScenarioOptions s = city(400, 3);
   s.gnss_degraded_start_s = 200;
   s.gnss_degraded_length_s = 60;
   s.gnss_degraded_factor = 10;
@@ -172,8 +179,8 @@ INSTANTIATE_TEST_SUITE_P(All, Troubles,
 
 TEST_P(Troubles, NoMethodDiverges) {
   for (const char* method : {"ekf", "refined"}) {
-    const Outcome out =
-        run(method, GetParam().scenario, imu_preset("ADIS16465"), OutageSchedule(), 330);
+    const Outcome out = run(method, GetParam().scenario, imu::imu_preset("ADIS16465"),
+                            evaluation::OutageSchedule(), 330);
     EXPECT_LT(out.metrics.reference->horizontal_rmse, 0.03) << method;
     EXPECT_LT(out.last_error, 0.1) << method;
     EXPECT_GT(out.metrics.reference->position_inside.fraction.col(2).minCoeff(), 0.95) << method;

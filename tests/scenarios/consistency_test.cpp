@@ -31,13 +31,13 @@ constexpr double kDuration = 160;
 constexpr double kSmootherAsked = 110;
 
 /// Keeps the last epoch up to a stamp.
-class EpochAt : public Sink {
+class EpochAt : public state::Sink {
  public:
   explicit EpochAt(int64_t until_ns) : until_ns_(until_ns) {}
-  void epoch(const Epoch& epoch) override {
+  void epoch(const state::Epoch& epoch) override {
     if (epoch.t_ns <= until_ns_) last = epoch;
   }
-  Epoch last;
+  state::Epoch last;
 
  private:
   int64_t until_ns_;
@@ -49,52 +49,61 @@ struct NormalizedErrors {
   double metres = 0;
 };
 
-NormalizedErrors normalized_errors(const Epoch& estimate, const Epoch& truth) {
+NormalizedErrors normalized_errors(const state::Epoch& estimate, const state::Epoch& truth) {
   const Eigen::Vector3d attitude = so3::log(estimate.q_n_b.conjugate() * truth.q_n_b);
-  const Eigen::Vector3d position = ned_offset(estimate.position, truth.position);
+  const Eigen::Vector3d position = geodesy::ned_offset(estimate.position, truth.position);
   const Eigen::Vector3d velocity = truth.velocity_n - estimate.velocity_n;
-  return {normalized_square(position, estimate.covariance_of(block::position)).value(),
-          normalized_square(velocity, estimate.covariance_of(block::velocity)).value(),
-          normalized_square(attitude, estimate.covariance_of(block::attitude)).value(),
+  return {evaluation::normalized_square(position, estimate.covariance_of(state::block::position))
+              .value(),
+          evaluation::normalized_square(velocity, estimate.covariance_of(state::block::velocity))
+              .value(),
+          evaluation::normalized_square(attitude, estimate.covariance_of(state::block::attitude))
+              .value(),
           position.squaredNorm()};
 }
 
-std::unique_ptr<Estimator> make_estimator(const std::string& method, const ImuNoise& noise,
-                                          const NavigationRunOptions& options,
-                                          const Mounting& mounting, Sink& sink) {
-  Aligner aligner(AlignmentOptions{}, noise, mounting);
+std::unique_ptr<state::Estimator> make_estimator(const std::string& method,
+                                                 const imu::ImuNoise& noise,
+                                                 const navigation::NavigationRunOptions& options,
+                                                 const state::Mounting& mounting,
+                                                 state::Sink& sink) {
+  alignment::Aligner aligner(alignment::AlignmentOptions{}, noise, mounting);
   if (method == "rts")
-    return make_smoother(std::make_unique<RtsRecorder>(noise, Layout{}, EkfOptions{}),
-                         std::move(aligner), options, sink);
-  auto ekf = std::make_unique<EkfNavigator>(noise, Layout{}, EkfOptions{});
+    return navigation::make_smoother(
+        std::make_unique<ekf::RtsRecorder>(noise, state::Layout{}, ekf::EkfOptions{}),
+        std::move(aligner), options, sink);
+  auto ekf = std::make_unique<ekf::EkfNavigator>(noise, state::Layout{}, ekf::EkfOptions{});
   if (method == "batch")
-    return make_smoother(std::make_unique<BatchRecorder>(std::move(ekf), FgoOptions{},
-                                                         PreintegrationModel::full, noise),
-                         std::move(aligner), options, sink);
-  std::unique_ptr<Navigator> navigator = std::move(ekf);
+    return navigation::make_smoother(
+        std::make_unique<fgo::BatchRecorder>(std::move(ekf), fgo::FgoOptions{},
+                                             preintegration::PreintegrationModel::full, noise),
+        std::move(aligner), options, sink);
+  std::unique_ptr<measurement::Navigator> navigator = std::move(ekf);
   if (method == "full" || method == "refined") {
-    const PreintegrationModel model =
-        method == "full" ? PreintegrationModel::full : PreintegrationModel::refined;
-    navigator = std::make_unique<WindowNavigator>(FgoOptions{}, model, noise);
+    const preintegration::PreintegrationModel model =
+        method == "full" ? preintegration::PreintegrationModel::full
+                         : preintegration::PreintegrationModel::refined;
+    navigator = std::make_unique<fgo::WindowNavigator>(fgo::FgoOptions{}, model, noise);
   }
-  return std::make_unique<NavigationRun>(std::move(navigator), std::move(aligner), options, sink);
+  return std::make_unique<navigation::NavigationRun>(std::move(navigator), std::move(aligner),
+                                                     options, sink);
 }
 
 /// What is simulated, and what is used of it.
 struct Experiment {
-  ScenarioOptions scenario;
-  NavigationRunOptions options;
+  simulation::ScenarioOptions scenario;
+  navigation::NavigationRunOptions options;
 };
 
 NormalizedErrors run(const std::string& method, Experiment experiment, int seed) {
-  const ImuNoise noise = imu_preset("ADIS16465");
-  ScenarioOptions& scenario = experiment.scenario;
+  const imu::ImuNoise noise = imu::imu_preset("ADIS16465");
+  simulation::ScenarioOptions& scenario = experiment.scenario;
   scenario.seed = seed;
   scenario.duration_s = kDuration;
-  SimulatedSource source(scenario, noise);
+  simulation::SimulatedSource source(scenario, noise);
   const bool smoother = method == "rts" || method == "batch";
   EpochAt sink(scenario.start_ns() + nanoseconds(smoother ? kSmootherAsked : kDuration));
-  const std::unique_ptr<Estimator> estimator =
+  const std::unique_ptr<state::Estimator> estimator =
       make_estimator(method, noise, experiment.options, source.mounting(), sink);
   while (const std::optional<Measurement> measurement = source.next())
     estimator->process(*measurement);
@@ -118,7 +127,7 @@ NormalizedErrors mean_of_runs(const std::string& method, const Experiment& exper
 }
 
 void expect_in_band(double nees) {
-  const Band band = mean_nees_band(3, kRuns);
+  const Band band = evaluation::mean_nees_band(3, kRuns);
   EXPECT_GT(nees, band.low);
   EXPECT_LT(nees, band.high);
 }

@@ -25,54 +25,60 @@ namespace {
 
 constexpr double kDeg = 3.14159265358979323846 / 180;
 
-std::unique_ptr<Navigator> make_navigator(const std::string& method, const ImuNoise& noise) {
-  if (method == "ekf") return std::make_unique<EkfNavigator>(noise, Layout{}, EkfOptions{});
-  const PreintegrationModel model =
-      method == "full" ? PreintegrationModel::full : PreintegrationModel::refined;
-  return std::make_unique<WindowNavigator>(FgoOptions{}, model, noise);
+std::unique_ptr<measurement::Navigator> make_navigator(const std::string& method,
+                                                       const imu::ImuNoise& noise) {
+  if (method == "ekf")
+    return std::make_unique<ekf::EkfNavigator>(noise, state::Layout{}, ekf::EkfOptions{});
+  const preintegration::PreintegrationModel model =
+      method == "full" ? preintegration::PreintegrationModel::full
+                       : preintegration::PreintegrationModel::refined;
+  return std::make_unique<fgo::WindowNavigator>(fgo::FgoOptions{}, model, noise);
 }
 
-EstimatorFactory factory(const std::string& method, const ImuNoise& noise) {
-  return [method, noise](const Mounting& mounting, Sink& sink) {
-    return std::make_unique<NavigationRun>(make_navigator(method, noise),
-                                           Aligner(AlignmentOptions{}, noise, mounting),
-                                           NavigationRunOptions{}, sink);
+evaluation::EstimatorFactory factory(const std::string& method, const imu::ImuNoise& noise) {
+  return [method, noise](const state::Mounting& mounting, state::Sink& sink) {
+    return std::make_unique<navigation::NavigationRun>(
+        make_navigator(method, noise),
+        alignment::Aligner(alignment::AlignmentOptions{}, noise, mounting),
+        navigation::NavigationRunOptions{}, sink);
   };
 }
 
 /// Errors against the truth, and the longitudes passed.
-class Observer : public OutageRunObserver {
+class Observer : public evaluation::OutageRunObserver {
  public:
-  explicit Observer(const Mounting& mounting, int64_t from_ns) : metrics_(mounting, from_ns) {}
-  void epoch(const Epoch& epoch) override {
+  explicit Observer(const state::Mounting& mounting, int64_t from_ns)
+      : metrics_(mounting, from_ns) {}
+  void epoch(const state::Epoch& epoch) override {
     metrics_.epoch(epoch);
     longitudes.push_back(epoch.position.longitude);
   }
-  void fix(const FixResult& fix) override { metrics_.fix(fix); }
-  void reference_error(const Epoch& epoch, const ReferenceError& error) override {
+  void fix(const state::FixResult& fix) override { metrics_.fix(fix); }
+  void reference_error(const state::Epoch& epoch, const state::ReferenceError& error) override {
     metrics_.reference_error(epoch, error);
   }
-  RunMetrics metrics() const { return metrics_.metrics(); }
+  evaluation::RunMetrics metrics() const { return metrics_.metrics(); }
 
   std::vector<double> longitudes;
 
  private:
-  RunMetricsCollector metrics_;
+  evaluation::RunMetricsCollector metrics_;
 };
 
 struct Outcome {
-  OutageRunResult run;
-  RunMetrics metrics;
+  evaluation::OutageRunResult run;
+  evaluation::RunMetrics metrics;
   std::vector<double> longitudes;
 };
 
-Outcome run(const std::string& method, const ScenarioOptions& scenario, const ImuNoise& noise,
-            const OutageSchedule& schedule, double settle_s = 150) {
-  auto source = std::make_unique<SimulatedSource>(scenario, noise);
+Outcome run(const std::string& method, const simulation::ScenarioOptions& scenario,
+            const imu::ImuNoise& noise, const evaluation::OutageSchedule& schedule,
+            double settle_s = 150) {
+  auto source = std::make_unique<simulation::SimulatedSource>(scenario, noise);
   Observer observer(source->mounting(), scenario.start_ns() + nanoseconds(settle_s));
   Outcome outcome;
-  outcome.run =
-      run_with_outages(std::move(source), schedule, factory(method, noise), {}, &observer);
+  outcome.run = evaluation::run_with_outages(std::move(source), schedule, factory(method, noise),
+                                             {}, &observer);
   outcome.metrics = observer.metrics();
   outcome.longitudes = observer.longitudes;
   return outcome;
@@ -86,22 +92,23 @@ struct Rms {
 /// RMS of the largest drift over the outages that begin at [from, to) km.
 Rms drift_rms(const Outcome& outcome, double from_km, double to_km) {
   std::vector<double> horizontal, vertical;
-  for (const OutageDrift& drift : outcome.run.drifts) {
+  for (const evaluation::OutageDrift& drift : outcome.run.drifts) {
     const double km = drift.distance_m * 1e-3;
     if (km < from_km || km >= to_km) continue;
     horizontal.push_back(drift.maximum.horizontal);
     vertical.push_back(drift.maximum.vertical);
   }
   if (horizontal.empty()) return {};
-  return {root_mean_square(horizontal), root_mean_square(vertical), horizontal.size()};
+  return {evaluation::root_mean_square(horizontal), evaluation::root_mean_square(vertical),
+          horizontal.size()};
 }
 
-OutageSchedule outages(double first_s, double length_s, double period_s) {
-  OutageOptions options;
+evaluation::OutageSchedule outages(double first_s, double length_s, double period_s) {
+  evaluation::OutageOptions options;
   options.first_s = first_s;
   options.length_s = length_s;
   options.period_s = period_s;
-  return OutageSchedule(options, 0);
+  return evaluation::OutageSchedule(options, 0);
 }
 
 void expect_alike(const Rms& full, const Rms& ekf, double share) {
@@ -113,7 +120,7 @@ void expect_alike(const Rms& full, const Rms& ekf, double share) {
 /// From 78 deg north over the 180 deg meridian, 200 km along a latitude circle whose north turns
 /// by 17 deg on the way: what is left is the filter's own accuracy.
 TEST(Airliner, FullIsTheEkfHundredsOfKilometresAwayAndRefinedIsNot) {
-  ScenarioOptions scenario;
+  simulation::ScenarioOptions scenario;
   scenario.name = "airliner";
   scenario.seed = 4;
   scenario.duration_s = 1500;
@@ -122,8 +129,8 @@ TEST(Airliner, FullIsTheEkfHundredsOfKilometresAwayAndRefinedIsNot) {
   scenario.longitude_deg = 176;
   scenario.heading_deg = 80;
   scenario.rest_s = 60;
-  const ImuNoise noise = imu_preset("navigation");
-  const OutageSchedule schedule = outages(500, 60, 90);
+  const imu::ImuNoise noise = imu::imu_preset("navigation");
+  const evaluation::OutageSchedule schedule = outages(500, 60, 90);
   const Outcome ekf = run("ekf", scenario, noise, schedule);
   const Outcome full = run("full", scenario, noise, schedule);
   const Outcome refined = run("refined", scenario, noise, schedule);
@@ -139,7 +146,7 @@ TEST(Airliner, FullIsTheEkfHundredsOfKilometresAwayAndRefinedIsNot) {
   EXPECT_GT(of_refined.horizontal, 50 * of_ekf.horizontal);
   EXPECT_GT(of_refined.vertical, 50 * of_ekf.vertical);
   for (const Outcome* outcome : {&ekf, &full}) {
-    const ReferenceMetrics& errors = *outcome->metrics.reference;
+    const evaluation::ReferenceMetrics& errors = *outcome->metrics.reference;
     EXPECT_LT(errors.heading_rmse, 0.02 * kDeg);
     EXPECT_LT(std::max(errors.roll_rmse, errors.pitch_rmse), 0.005 * kDeg);
     EXPECT_NEAR(errors.attitude_inside.fraction.col(2).minCoeff(), 1, 0.1);
@@ -148,13 +155,13 @@ TEST(Airliner, FullIsTheEkfHundredsOfKilometresAwayAndRefinedIsNot) {
 
 /// The same at 60 km as at the start, with a gyroscope that sees 1 deg/h.
 TEST(Motorway, FullIsTheEkfNearAndFar) {
-  ScenarioOptions scenario;
+  simulation::ScenarioOptions scenario;
   scenario.name = "motorway";
   scenario.seed = 2;
   scenario.duration_s = 2200;
   scenario.imu_rate_hz = 50;
-  const ImuNoise noise = imu_preset("tactical");
-  const OutageSchedule schedule = outages(200, 60, 90);
+  const imu::ImuNoise noise = imu::imu_preset("tactical");
+  const evaluation::OutageSchedule schedule = outages(200, 60, 90);
   const Outcome ekf = run("ekf", scenario, noise, schedule);
   const Outcome full = run("full", scenario, noise, schedule);
   EXPECT_GT(ekf.run.drifts.back().distance_m, 55e3);
@@ -181,7 +188,7 @@ INSTANTIATE_TEST_SUITE_P(All, Antimeridian,
                          [](const auto& place) { return place.param.name; });
 
 TEST_P(Antimeridian, NothingJumps) {
-  ScenarioOptions scenario;
+  simulation::ScenarioOptions scenario;
   scenario.name = "motorway";
   scenario.seed = 6;
   scenario.duration_s = 260;
@@ -190,7 +197,8 @@ TEST_P(Antimeridian, NothingJumps) {
   scenario.longitude_deg = GetParam().longitude;
   scenario.heading_deg = GetParam().heading;
   for (const char* method : {"ekf", "refined", "full"}) {
-    const Outcome outcome = run(method, scenario, imu_preset("tactical"), outages(200, 30, 60));
+    const Outcome outcome =
+        run(method, scenario, imu::imu_preset("tactical"), outages(200, 30, 60));
     EXPECT_LT(outcome.longitudes.front() * outcome.longitudes.back(), 0) << method;
     for (std::size_t i = 1; i < outcome.longitudes.size(); ++i) {
       const double step = so3::wrap(outcome.longitudes[i] - outcome.longitudes[i - 1]);
@@ -199,17 +207,17 @@ TEST_P(Antimeridian, NothingJumps) {
     EXPECT_EQ(outcome.metrics.gnss.rejected, 0) << method;
     ASSERT_EQ(outcome.run.drifts.size(), 1u);
     EXPECT_LT(outcome.run.drifts[0].maximum.horizontal, 2) << method;
-    const ReferenceMetrics& errors = *outcome.metrics.reference;
+    const evaluation::ReferenceMetrics& errors = *outcome.metrics.reference;
     EXPECT_LT(errors.heading_rmse, 0.3 * kDeg) << method;
     EXPECT_LT(std::max(errors.roll_rmse, errors.pitch_rmse), 0.05 * kDeg) << method;
   }
 }
 
 /// Keeps the last epoch.
-class LastEpoch : public Sink {
+class LastEpoch : public state::Sink {
  public:
-  void epoch(const Epoch& epoch) override { last = epoch; }
-  Epoch last;
+  void epoch(const state::Epoch& epoch) override { last = epoch; }
+  state::Epoch last;
 };
 
 struct MeanNees {
@@ -219,25 +227,28 @@ struct MeanNees {
 constexpr int kRuns = 12;
 
 /// Errors at the end of the trip by their covariance, trip and sensor errors drawn anew each time.
-MeanNees mean_nees(const std::string& method, ScenarioOptions scenario, const ImuNoise& noise) {
+MeanNees mean_nees(const std::string& method, simulation::ScenarioOptions scenario,
+                   const imu::ImuNoise& noise) {
   MeanNees mean;
   for (scenario.seed = 1; scenario.seed <= kRuns; ++scenario.seed) {
-    SimulatedSource source(scenario, noise);
+    simulation::SimulatedSource source(scenario, noise);
     LastEpoch sink;
-    const std::unique_ptr<Estimator> estimator = factory(method, noise)(source.mounting(), sink);
+    const std::unique_ptr<state::Estimator> estimator =
+        factory(method, noise)(source.mounting(), sink);
     while (const std::optional<Measurement> measurement = source.next()) {
       estimator->process(*measurement);
     }
     estimator->finish();
-    const Epoch& estimate = sink.last;
-    const Epoch truth = source.truth(estimate.t_ns);
-    const auto normalized = [&](const Eigen::Vector3d& error, const NodeBlock& of) {
-      return normalized_square(error, estimate.covariance_of(of)).value() / kRuns;
+    const state::Epoch& estimate = sink.last;
+    const state::Epoch truth = source.truth(estimate.t_ns);
+    const auto normalized = [&](const Eigen::Vector3d& error, const state::NodeBlock& of) {
+      return evaluation::normalized_square(error, estimate.covariance_of(of)).value() / kRuns;
     };
-    mean.position += normalized(ned_offset(estimate.position, truth.position), block::position);
-    mean.velocity += normalized(truth.velocity_n - estimate.velocity_n, block::velocity);
+    mean.position +=
+        normalized(geodesy::ned_offset(estimate.position, truth.position), state::block::position);
+    mean.velocity += normalized(truth.velocity_n - estimate.velocity_n, state::block::velocity);
     mean.attitude +=
-        normalized(so3::log(estimate.q_n_b.conjugate() * truth.q_n_b), block::attitude);
+        normalized(so3::log(estimate.q_n_b.conjugate() * truth.q_n_b), state::block::attitude);
   }
   return mean;
 }
@@ -254,13 +265,13 @@ INSTANTIATE_TEST_SUITE_P(Trips, FarConsistency,
                          [](const auto& far) { return far.param.scenario; });
 
 TEST_P(FarConsistency, MeanNeesLiesInItsBand) {
-  ScenarioOptions scenario;
+  simulation::ScenarioOptions scenario;
   scenario.name = GetParam().scenario;
   scenario.duration_s = 300;
   scenario.imu_rate_hz = 50;
   scenario.reference_rate_hz = 0;
-  const ImuNoise noise = imu_preset(GetParam().imu);
-  const Band band = mean_nees_band(3, kRuns);
+  const imu::ImuNoise noise = imu::imu_preset(GetParam().imu);
+  const Band band = evaluation::mean_nees_band(3, kRuns);
   for (const char* method : {"ekf", "full"}) {
     const MeanNees nees = mean_nees(method, scenario, noise);
     for (const double value : {nees.position, nees.velocity, nees.attitude}) {
@@ -272,13 +283,13 @@ TEST_P(FarConsistency, MeanNeesLiesInItsBand) {
 
 /// What the band is to see: gravity of the runway, felt tens of kilometres away at 250 m/s.
 TEST(FarConsistencyControl, RefinedIsFarOutsideOnAFlight) {
-  ScenarioOptions scenario;
+  simulation::ScenarioOptions scenario;
   scenario.name = "airliner";
   scenario.duration_s = 300;
   scenario.imu_rate_hz = 50;
   scenario.reference_rate_hz = 0;
-  const MeanNees nees = mean_nees("refined", scenario, imu_preset("navigation"));
-  EXPECT_GT(nees.attitude, 100 * mean_nees_band(3, kRuns).high);
+  const MeanNees nees = mean_nees("refined", scenario, imu::imu_preset("navigation"));
+  EXPECT_GT(nees.attitude, 100 * evaluation::mean_nees_band(3, kRuns).high);
 }
 
 }  // namespace

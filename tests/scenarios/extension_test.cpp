@@ -18,27 +18,28 @@
 namespace foucault {
 namespace {
 
-constexpr Block kTemperature{"temperature", 1, "K"};
+constexpr state::Block kTemperature{"temperature", 1, "K"};
 constexpr double kPrior = 5;        // [K]
 constexpr double kPerKelvin = 0.1;  // [m/K]
 constexpr double kRangeSigma = 0.05;
 
-Layout layout() { return Layout().add(kTemperature, kPrior); }
+state::Layout layout() { return state::Layout().add(kTemperature, kPrior); }
 
 /// Range from the IMU to a beacon, too long by kPerKelvin times the temperature.
-class BeaconRange final : public Observation {
+class BeaconRange final : public measurement::Observation {
  public:
   BeaconRange(const Geodetic& beacon, double range) : beacon_(beacon), range_(range) {}
 
   std::string_view name() const override { return "beacon_range"; }
-  Linearized linearize(const NavState& x, const Eigen::Vector3d& /*rate_b*/,
-                       const Layout& layout) const override {
-    const SlowBlock& temperature = *layout.find(kTemperature);
-    const Eigen::Vector3d way_n = displacement_n(x.position, beacon_, Place(x.position));
-    Linearized z(1, layout.size());
+  state::Linearized linearize(const state::NavState& x, const Eigen::Vector3d& /*rate_b*/,
+                              const state::Layout& layout) const override {
+    const state::SlowBlock& temperature = *layout.find(kTemperature);
+    const Eigen::Vector3d way_n =
+        geodesy::displacement_n(x.position, beacon_, geodesy::Place(x.position));
+    state::Linearized z(1, layout.size());
     z.r[0] = range_ - way_n.norm() - kPerKelvin * x.slow[temperature.index];
-    columns_of(z.H, block::position) = -way_n.normalized().transpose();
-    columns_of(z.H, temperature).setConstant(kPerKelvin);
+    state::columns_of(z.H, state::block::position) = -way_n.normalized().transpose();
+    state::columns_of(z.H, temperature).setConstant(kPerKelvin);
     z.R(0, 0) = kRangeSigma * kRangeSigma;
     return z;
   }
@@ -61,10 +62,10 @@ class Trip {
 
   double temperature() const { return temperature_; }
 
-  void drive(Navigator& navigator) {
-    SimulatedSource source(options_, noise());
-    const Geodetic beacon =
-        displaced(options_.start_position(), {200, 150, -30}, Place(options_.start_position()));
+  void drive(measurement::Navigator& navigator) {
+    simulation::SimulatedSource source(options_, noise());
+    const Geodetic beacon = geodesy::displaced(options_.start_position(), {200, 150, -30},
+                                               geodesy::Place(options_.start_position()));
     navigator.start(initial(source));
     std::optional<GnssFix> fix;
     while (const std::optional<Measurement> m = source.next()) {
@@ -78,66 +79,70 @@ class Trip {
         navigator.hold();
         continue;
       }
-      navigator.update(gnss_position(*fix));
+      navigator.update(measurement::gnss_position(*fix));
       const Geodetic here = source.truth(fix->t_ns).position;
-      const double range = displacement_n(here, beacon, Place(here)).norm();
+      const double range = geodesy::displacement_n(here, beacon, geodesy::Place(here)).norm();
       navigator.update(std::make_shared<BeaconRange>(
           beacon, range + kPerKelvin * temperature_ + kRangeSigma * normal_(rng_)));
     }
   }
 
-  static ImuNoise noise() { return imu_preset("ADIS16465"); }
+  static imu::ImuNoise noise() { return imu::imu_preset("ADIS16465"); }
 
  private:
-  Epoch initial(const SimulatedSource& source) const {
-    Epoch epoch = source.truth(options_.start_ns());
+  state::Epoch initial(const simulation::SimulatedSource& source) const {
+    state::Epoch epoch = source.truth(options_.start_ns());
     epoch.bias = {};
     auto variance = epoch.covariance.diagonal();
-    part(variance, block::position).setConstant(1e-2);
-    part(variance, block::velocity).setConstant(1e-2);
-    part(variance, block::attitude) << 1e-6, 1e-6, 1e-4;
-    part(variance, block::gyro_bias).setConstant(std::pow(gyro_markov_bias(noise()).sigma, 2));
-    part(variance, block::accel_bias).setConstant(std::pow(accel_markov_bias(noise()).sigma, 2));
+    state::part(variance, state::block::position).setConstant(1e-2);
+    state::part(variance, state::block::velocity).setConstant(1e-2);
+    state::part(variance, state::block::attitude) << 1e-6, 1e-6, 1e-4;
+    state::part(variance, state::block::gyro_bias)
+        .setConstant(std::pow(imu::gyro_markov_bias(noise()).sigma, 2));
+    state::part(variance, state::block::accel_bias)
+        .setConstant(std::pow(imu::accel_markov_bias(noise()).sigma, 2));
     return epoch;
   }
 
-  ScenarioOptions options_;
+  simulation::ScenarioOptions options_;
   std::mt19937_64 rng_;
   std::normal_distribution<double> normal_;
   double temperature_;
 };
 
-using Find = std::function<Epoch(Trip&)>;
+using Find = std::function<state::Epoch(Trip&)>;
 
 template <class Recorder>
-Epoch in_the_outage(Trip& trip, Recorder recorder) {
+state::Epoch in_the_outage(Trip& trip, Recorder recorder) {
   trip.drive(recorder);
   return recorder.smoothed()[25].epoch();
 }
 
-std::unique_ptr<Navigator> filter() {
-  return std::make_unique<EkfNavigator>(Trip::noise(), layout(), EkfOptions{});
+std::unique_ptr<measurement::Navigator> filter() {
+  return std::make_unique<ekf::EkfNavigator>(Trip::noise(), layout(), ekf::EkfOptions{});
 }
 
-Epoch by_ekf(Trip& trip) {
-  const std::unique_ptr<Navigator> navigator = filter();
+state::Epoch by_ekf(Trip& trip) {
+  const std::unique_ptr<measurement::Navigator> navigator = filter();
   trip.drive(*navigator);
   return navigator->epoch();
 }
 
-Epoch by_window(Trip& trip) {
-  WindowNavigator window(FgoOptions{}, PreintegrationModel::full, Trip::noise(), layout());
+state::Epoch by_window(Trip& trip) {
+  fgo::WindowNavigator window(fgo::FgoOptions{}, preintegration::PreintegrationModel::full,
+                              Trip::noise(), layout());
   trip.drive(window);
   return window.epoch();
 }
 
-Epoch by_rts(Trip& trip) {
-  return in_the_outage(trip, RtsRecorder(Trip::noise(), layout(), EkfOptions{}));
+state::Epoch by_rts(Trip& trip) {
+  return in_the_outage(trip, ekf::RtsRecorder(Trip::noise(), layout(), ekf::EkfOptions{}));
 }
 
-Epoch by_batch(Trip& trip) {
-  return in_the_outage(trip, BatchRecorder(filter(), FgoOptions{}, PreintegrationModel::full,
-                                           Trip::noise(), layout()));
+state::Epoch by_batch(Trip& trip) {
+  return in_the_outage(
+      trip, fgo::BatchRecorder(filter(), fgo::FgoOptions{},
+                               preintegration::PreintegrationModel::full, Trip::noise(), layout()));
 }
 
 class Extension : public ::testing::TestWithParam<std::pair<const char*, Find>> {};
@@ -151,13 +156,14 @@ TEST_P(Extension, ANewBlockIsFoundByANewMeasurement) {
   double nees = 0;
   for (int seed = 1; seed <= kRuns; ++seed) {
     Trip trip(seed);
-    const Epoch epoch = GetParam().second(trip);
+    const state::Epoch epoch = GetParam().second(trip);
     const double error = trip.temperature() - epoch.slow[0];
-    const double variance = part(epoch.covariance.diagonal(), *layout().find(kTemperature))[0];
+    const double variance =
+        state::part(epoch.covariance.diagonal(), *layout().find(kTemperature))[0];
     EXPECT_LT(std::sqrt(variance), 0.05 * kPrior);
     nees += error * error / variance / kRuns;
   }
-  const Band band = mean_nees_band(1, kRuns);
+  const Band band = evaluation::mean_nees_band(1, kRuns);
   EXPECT_GT(nees, band.low);
   EXPECT_LT(nees, band.high);
 }

@@ -22,9 +22,9 @@ const std::vector<std::string> kMethods{"ekf", "refined", "full"};
 
 class Faults : public ::testing::Test {
  protected:
-  std::vector<FaultOutcome> run(const std::string& fault, int64_t seed = 1) const {
-    return run_fault(find_fault_case(fault), kMethods, Settings(), seed,
-                     folder_ / (fault + ".rawlog"));
+  std::vector<laboratory::FaultOutcome> run(const std::string& fault, int64_t seed = 1) const {
+    return app::run_fault(laboratory::find_fault_case(fault), kMethods, Settings(), seed,
+                          folder_ / (fault + ".rawlog"));
   }
 
   test::TestFolder folder_;
@@ -32,7 +32,8 @@ class Faults : public ::testing::Test {
 
 TEST_F(Faults, OutliersHardlyMatter) {
   for (const int64_t seed : {1, 2, 3}) {
-    const std::vector<FaultOutcome> clean = run("none", seed), outliers = run("outliers", seed);
+    const std::vector<laboratory::FaultOutcome> clean = run("none", seed),
+                                                outliers = run("outliers", seed);
     for (std::size_t i = 0; i < kMethods.size(); ++i) {
       ASSERT_EQ(outliers[i].exit_code, 0) << outliers[i].message;
       EXPECT_LT(outliers[i].rms_m, 1.3 * clean[i].rms_m) << kMethods[i] << seed;
@@ -47,7 +48,7 @@ TEST_F(Faults, OutliersHardlyMatter) {
 /// 60 s without GNSS cost metres with this IMU; what the drifting fixes still tell holds it.
 TEST_F(Faults, ADriftOfTheFixesIsNotFollowed) {
   for (const int64_t seed : {1, 2, 3}) {
-    for (const FaultOutcome& outcome : run("ramp", seed)) {
+    for (const laboratory::FaultOutcome& outcome : run("ramp", seed)) {
       EXPECT_LT(outcome.largest_m, 2) << outcome.method << seed;
       EXPECT_THAT(outcome.message, HasSubstr("drift")) << seed;
       ASSERT_TRUE(outcome.recovery_s.has_value()) << seed;
@@ -58,7 +59,7 @@ TEST_F(Faults, ADriftOfTheFixesIsNotFollowed) {
 
 /// Slower than the gate sees: it is followed, but what is true again is believed within seconds.
 TEST_F(Faults, AFollowedDriftIsLeftAtOnce) {
-  for (const FaultOutcome& outcome : run("ramp_coarse")) {
+  for (const laboratory::FaultOutcome& outcome : run("ramp_coarse")) {
     EXPECT_LT(outcome.largest_m, 25) << outcome.method;
     EXPECT_LT(outcome.rms_m, 6) << outcome.method;  // 20 when the way back is taken for a drift
     ASSERT_TRUE(outcome.recovery_s.has_value());
@@ -67,8 +68,8 @@ TEST_F(Faults, AFollowedDriftIsLeftAtOnce) {
 }
 
 TEST_F(Faults, AJumpIsBelievedOnlyIfItStays) {
-  for (const FaultOutcome& away : run("jump")) EXPECT_LT(away.largest_m, 2);
-  for (const FaultOutcome& back : run("jump_back")) {
+  for (const laboratory::FaultOutcome& away : run("jump")) EXPECT_LT(away.largest_m, 2);
+  for (const laboratory::FaultOutcome& back : run("jump_back")) {
     EXPECT_GT(back.largest_m, 99);  // the first half of the recording is wrong, and consistent
     ASSERT_TRUE(back.recovery_s.has_value());
     EXPECT_LT(*back.recovery_s, 40);
@@ -82,7 +83,7 @@ TEST_F(Faults, OthersLeaveCentimetres) {
        {"sigma_small", "duplicate", "late", "swapped", "another_week", "imu_gap_sample",
         "imu_gap_3s", "imu_gap_60s", "imu_duplicate", "imu_backward", "imu_jitter", "imu_nan",
         "imu_clipped", "imu_stuck", "imu_half_rate", "imu_interpolated"}) {
-    for (const FaultOutcome& outcome : run(fault)) {
+    for (const laboratory::FaultOutcome& outcome : run(fault)) {
       EXPECT_EQ(outcome.exit_code, 0) << fault << ": " << outcome.message;
       EXPECT_LT(outcome.rms_m, 0.02) << fault;
       EXPECT_LT(outcome.largest_m, 0.3) << fault;
@@ -93,7 +94,7 @@ TEST_F(Faults, OthersLeaveCentimetres) {
 }
 
 TEST_F(Faults, BurstsAreMadeEvenAndNamed) {
-  for (const FaultOutcome& outcome : run("imu_bursts")) {
+  for (const laboratory::FaultOutcome& outcome : run("imu_bursts")) {
     EXPECT_EQ(outcome.exit_code, 0) << outcome.message;
     EXPECT_LT(outcome.rms_m, 0.02) << outcome.method;
     EXPECT_LT(outcome.largest_m, 0.3) << outcome.method;
@@ -102,7 +103,7 @@ TEST_F(Faults, BurstsAreMadeEvenAndNamed) {
 }
 
 TEST_F(Faults, SigmasThatAreTooSmallAreNamed) {
-  for (const FaultOutcome& outcome : run("sigma_small")) {
+  for (const laboratory::FaultOutcome& outcome : run("sigma_small")) {
     EXPECT_THAT(outcome.message, HasSubstr("times as large as their sigmas")) << outcome.method;
   }
 }
@@ -110,7 +111,7 @@ TEST_F(Faults, SigmasThatAreTooSmallAreNamed) {
 /// As good as 60 s without GNSS, with this IMU.
 TEST_F(Faults, FixesThatCannotBeUsedAreAnOutage) {
   for (const char* fault : {"sigma_zero", "sigma_negative", "sigma_nan"}) {
-    for (const FaultOutcome& outcome : run(fault)) {
+    for (const laboratory::FaultOutcome& outcome : run(fault)) {
       EXPECT_EQ(outcome.exit_code, 0) << fault;
       EXPECT_LT(outcome.largest_m, 10) << fault;
       ASSERT_TRUE(outcome.recovery_s.has_value()) << fault;
@@ -121,7 +122,7 @@ TEST_F(Faults, FixesThatCannotBeUsedAreAnOutage) {
 }
 
 TEST_F(Faults, HiddenLossesAreNamedAndRecovered) {
-  for (const FaultOutcome& outcome : run("imu_splice")) {
+  for (const laboratory::FaultOutcome& outcome : run("imu_splice")) {
     EXPECT_LT(outcome.largest_m, 5) << outcome.method;
     ASSERT_TRUE(outcome.recovery_s.has_value());
     EXPECT_LT(*outcome.recovery_s, 10);
@@ -137,7 +138,7 @@ TEST_F(Faults, UselessRecordingsAreRefusedInWords) {
       {"file_empty", "is empty"}, {"file_text", "no MRPT rawlog"},
   };
   for (const auto& [fault, words] : expected) {
-    for (const FaultOutcome& outcome : run(fault)) {
+    for (const laboratory::FaultOutcome& outcome : run(fault)) {
       EXPECT_EQ(outcome.exit_code, 1) << fault;
       EXPECT_THAT(outcome.message, HasSubstr(words)) << fault;
     }
@@ -146,7 +147,7 @@ TEST_F(Faults, UselessRecordingsAreRefusedInWords) {
 
 TEST_F(Faults, WhatComesBeforeDamageIsProcessed) {
   for (const char* fault : {"file_truncated", "file_overwritten"}) {
-    for (const FaultOutcome& outcome : run(fault)) {
+    for (const laboratory::FaultOutcome& outcome : run(fault)) {
       EXPECT_EQ(outcome.exit_code, 1) << fault;
       EXPECT_GT(outcome.used, 150) << fault;
       EXPECT_LT(outcome.rms_m, 0.02) << fault;

@@ -26,13 +26,13 @@ namespace {
 /// Fixes, an outage, and a minute of fixes again.
 struct Drive {
   const char* scenario;
-  ImuNoise noise;
+  imu::ImuNoise noise;
   double outage_s;
   double imu_rate_hz = 20;
 
-  ScenarioOptions options() const {
+  simulation::ScenarioOptions options() const {
     constexpr double kAfter = 60;
-    ScenarioOptions o;
+    simulation::ScenarioOptions o;
     o.name = scenario;
     o.duration_s = kBefore + outage_s + kAfter;
     o.seed = 5;
@@ -47,35 +47,35 @@ struct Drive {
 };
 
 /// The true state with a coarse alignment's covariance.
-Epoch initial(const Drive& drive, const SimulatedSource& source) {
-  Epoch epoch = source.truth(drive.options().start_ns());
+state::Epoch initial(const Drive& drive, const simulation::SimulatedSource& source) {
+  state::Epoch epoch = source.truth(drive.options().start_ns());
   epoch.bias = {};
-  NodeVector sigma;
+  state::NodeVector sigma;
   sigma << Eigen::Vector3d::Constant(0.1), Eigen::Vector3d::Constant(0.1),
       Eigen::Vector3d(1e-3, 1e-3, 1e-2),
-      Eigen::Vector3d::Constant(gyro_markov_bias(drive.noise).sigma),
-      Eigen::Vector3d::Constant(accel_markov_bias(drive.noise).sigma);
+      Eigen::Vector3d::Constant(imu::gyro_markov_bias(drive.noise).sigma),
+      Eigen::Vector3d::Constant(imu::accel_markov_bias(drive.noise).sigma);
   epoch.covariance = sigma.cwiseAbs2().asDiagonal();
   return epoch;
 }
 
 /// True minus estimated.
-NodeVector error_of(const Epoch& epoch, const Epoch& truth) {
-  NodeVector error;
-  error << displacement_n(epoch.position, truth.position, Place(truth.position)),
+state::NodeVector error_of(const state::Epoch& epoch, const state::Epoch& truth) {
+  state::NodeVector error;
+  error << geodesy::displacement_n(epoch.position, truth.position, geodesy::Place(truth.position)),
       truth.velocity_n - epoch.velocity_n, so3::log(epoch.q_n_b.conjugate() * truth.q_n_b),
       truth.bias.gyro - epoch.bias.gyro, truth.bias.accel - epoch.bias.accel;
   return error;
 }
 
 struct Outcome {
-  Innovation back;  ///< of the first fix after the outage
-  Epoch end;
-  NodeVector error;  ///< of `end`
+  state::Innovation back;  ///< of the first fix after the outage
+  state::Epoch end;
+  state::NodeVector error;  ///< of `end`
 };
 
-Outcome run(const Drive& drive, Navigator& navigator) {
-  SimulatedSource source(drive.options(), drive.noise);
+Outcome run(const Drive& drive, measurement::Navigator& navigator) {
+  simulation::SimulatedSource source(drive.options(), drive.noise);
   navigator.start(initial(drive, source));
   Outcome outcome;
   std::optional<GnssFix> fix;
@@ -89,8 +89,9 @@ Outcome run(const Drive& drive, Navigator& navigator) {
       navigator.hold();
       continue;
     }
-    if (fix->t_ns == drive.outage_end_ns()) outcome.back = navigator.innovation(GnssPosition(*fix));
-    navigator.update(gnss_position(*fix));
+    if (fix->t_ns == drive.outage_end_ns())
+      outcome.back = navigator.innovation(measurement::GnssPosition(*fix));
+    navigator.update(measurement::gnss_position(*fix));
   }
   outcome.end = navigator.epoch();
   outcome.error = error_of(outcome.end, source.truth(outcome.end.t_ns));
@@ -98,12 +99,12 @@ Outcome run(const Drive& drive, Navigator& navigator) {
 }
 
 Outcome run_filter(const Drive& drive) {
-  EkfNavigator filter(drive.noise, Layout{}, EkfOptions{});
+  ekf::EkfNavigator filter(drive.noise, state::Layout{}, ekf::EkfOptions{});
   return run(drive, filter);
 }
 
-Outcome run_window(const Drive& drive, PreintegrationModel model) {
-  WindowNavigator window(FgoOptions{}, model, drive.noise);
+Outcome run_window(const Drive& drive, preintegration::PreintegrationModel model) {
+  fgo::WindowNavigator window(fgo::FgoOptions{}, model, drive.noise);
   return run(drive, window);
 }
 
@@ -114,105 +115,107 @@ double relative_deviation(const Matrix& value, const Matrix& expected) {
   return (scale * (value - expected) * scale).cwiseAbs().maxCoeff();
 }
 
-Eigen::Matrix2d horizontal(const Innovation& innovation) {
+Eigen::Matrix2d horizontal(const state::Innovation& innovation) {
   return innovation.covariance.topLeftCorner<2, 2>();
 }
 
 /// In sigmas.
 double largest_horizontal_error(const Outcome& outcome) {
-  const NodeVector sigma = outcome.end.covariance.diagonal().cwiseSqrt();
+  const state::NodeVector sigma = outcome.end.covariance.diagonal().cwiseSqrt();
   return outcome.error.cwiseQuotient(sigma).head<2>().cwiseAbs().maxCoeff();
 }
 
 /// Heights are unstable, and 47 km up they are no longer linear: only horizontally do two models
 /// agree before the return.
 TEST(LongOutage, OfAnHourInACity) {
-  const Drive drive{"city", imu_preset("ADIS16465"), 3600};
+  const Drive drive{"city", imu::imu_preset("ADIS16465"), 3600};
   const Outcome ekf = run_filter(drive);
-  const Outcome full = run_window(drive, PreintegrationModel::full);
+  const Outcome full = run_window(drive, preintegration::PreintegrationModel::full);
   EXPECT_GT(horizontal(ekf.back)(0, 0), 1e8);
   EXPECT_LT(relative_deviation(horizontal(full.back), horizontal(ekf.back)), 0.01);
   EXPECT_LT(relative_deviation(full.end.covariance, ekf.end.covariance), 0.01);
   EXPECT_LT(largest_horizontal_error(full), 4);
-  const Outcome refined = run_window(drive, PreintegrationModel::refined);
+  const Outcome refined = run_window(drive, preintegration::PreintegrationModel::refined);
   EXPECT_LT(largest_horizontal_error(refined), 4);
 }
 
 TEST(LongOutage, OfTwoHoursAtRest) {
-  const Drive drive{"static", imu_preset("navigation"), 7200};
+  const Drive drive{"static", imu::imu_preset("navigation"), 7200};
   const Outcome ekf = run_filter(drive);
-  const Outcome full = run_window(drive, PreintegrationModel::full);
+  const Outcome full = run_window(drive, preintegration::PreintegrationModel::full);
   EXPECT_LT(relative_deviation(full.end.covariance, ekf.end.covariance), 0.01);
   EXPECT_LT(largest_horizontal_error(full), 4);
-  const Outcome refined = run_window(drive, PreintegrationModel::refined);
+  const Outcome refined = run_window(drive, preintegration::PreintegrationModel::refined);
   EXPECT_LT(largest_horizontal_error(refined), 4);
 }
 
 /// What a smoother says afterwards, one a node.
 template <class Recorder>
-std::deque<SmoothedEpoch> smoothed(const Drive& drive, Recorder recorder) {
+std::deque<measurement::SmoothedEpoch> smoothed(const Drive& drive, Recorder recorder) {
   run(drive, recorder);
   return recorder.smoothed();
 }
 
-std::deque<SmoothedEpoch> rts(const Drive& drive) {
-  return smoothed(drive, RtsRecorder(drive.noise, Layout{}, EkfOptions{}));
+std::deque<measurement::SmoothedEpoch> rts(const Drive& drive) {
+  return smoothed(drive, ekf::RtsRecorder(drive.noise, state::Layout{}, ekf::EkfOptions{}));
 }
 
-std::deque<SmoothedEpoch> batch(const Drive& drive) {
-  return smoothed(drive,
-                  BatchRecorder(std::make_unique<EkfNavigator>(drive.noise, Layout{}, EkfOptions{}),
-                                FgoOptions{}, PreintegrationModel::full, drive.noise));
+std::deque<measurement::SmoothedEpoch> batch(const Drive& drive) {
+  return smoothed(
+      drive,
+      fgo::BatchRecorder(
+          std::make_unique<ekf::EkfNavigator>(drive.noise, state::Layout{}, ekf::EkfOptions{}),
+          fgo::FgoOptions{}, preintegration::PreintegrationModel::full, drive.noise));
 }
 
-double smallest_eigenvalue_in_sigmas(const NodeMatrix& P) {
-  const NodeMatrix scale = P.diagonal().cwiseSqrt().cwiseInverse().asDiagonal();
-  return Eigen::SelfAdjointEigenSolver<NodeMatrix>(scale * P * scale, Eigen::EigenvaluesOnly)
+double smallest_eigenvalue_in_sigmas(const state::NodeMatrix& P) {
+  const state::NodeMatrix scale = P.diagonal().cwiseSqrt().cwiseInverse().asDiagonal();
+  return Eigen::SelfAdjointEigenSolver<state::NodeMatrix>(scale * P * scale, Eigen::EigenvaluesOnly)
       .eigenvalues()
       .minCoeff();
 }
 
-double nees(const Eigen::Vector3d& error, const Epoch& epoch) {
+double nees(const Eigen::Vector3d& error, const state::Epoch& epoch) {
   const Eigen::Matrix3d P = epoch.covariance.topLeftCorner<3, 3>();
   return error.dot(P.llt().solve(error));
 }
 
 /// Half an hour, in which the filter's errors of 10 km are still linear.
 TEST(LongOutage, SmoothersAreSoundInTheMiddleOfIt) {
-  const Drive drive{"city", imu_preset("ADIS16465"), 1800};
+  const Drive drive{"city", imu::imu_preset("ADIS16465"), 1800};
   constexpr double kNeesOfOneInAMillion = 30.7;  // chi-square of 3
-  const SimulatedSource source(drive.options(), drive.noise);
-  const std::deque<SmoothedEpoch> filtered = rts(drive);
-  const std::deque<SmoothedEpoch> optimized = batch(drive);
+  const simulation::SimulatedSource source(drive.options(), drive.noise);
+  const std::deque<measurement::SmoothedEpoch> filtered = rts(drive);
+  const std::deque<measurement::SmoothedEpoch> optimized = batch(drive);
   ASSERT_EQ(filtered.size(), optimized.size());
   for (std::size_t k = 0; k < filtered.size(); ++k) {
-    for (const Epoch& epoch : {filtered[k].epoch(), optimized[k].epoch()}) {
+    for (const state::Epoch& epoch : {filtered[k].epoch(), optimized[k].epoch()}) {
       EXPECT_GT(smallest_eigenvalue_in_sigmas(epoch.covariance), 1e-4) << k;
-      const NodeVector error = error_of(epoch, source.truth(epoch.t_ns));
+      const state::NodeVector error = error_of(epoch, source.truth(epoch.t_ns));
       EXPECT_LT(nees(error.head<3>(), epoch), kNeesOfOneInAMillion) << k;
     }
   }
 }
 
-ImuNoise with_constant_biases() {
-  ImuNoise noise = imu_preset("ADIS16465");
+imu::ImuNoise with_constant_biases() {
+  imu::ImuNoise noise = imu::imu_preset("ADIS16465");
   noise.gyro_bias_sigma = noise.accel_bias_sigma = 0;
   return noise;
 }
 
-ImuNoise with_a_constant_gyro_bias() {
-  ImuNoise noise = imu_preset("ADIS16465");
+imu::ImuNoise with_a_constant_gyro_bias() {
+  imu::ImuNoise noise = imu::imu_preset("ADIS16465");
   noise.gyro_bias_sigma = 0;
   return noise;
 }
 
-ImuNoise with_biases_of_a_century() {
-  ImuNoise noise = imu_preset("ADIS16465");
+imu::ImuNoise with_biases_of_a_century() {
+  imu::ImuNoise noise = imu::imu_preset("ADIS16465");
   noise.bias_tau = 3e9;
   return noise;
 }
 
-class ConstantBias : public ::testing::TestWithParam<ImuNoise (*)()> {};
+class ConstantBias : public ::testing::TestWithParam<imu::ImuNoise (*)()> {};
 INSTANTIATE_TEST_SUITE_P(Noises, ConstantBias,
                          ::testing::Values(with_constant_biases, with_a_constant_gyro_bias,
                                            with_biases_of_a_century));
@@ -220,34 +223,35 @@ INSTANTIATE_TEST_SUITE_P(Noises, ConstantBias,
 TEST_P(ConstantBias, WindowAndFilterAgree) {
   const Drive drive{"city", GetParam()(), 60, 50};
   const Outcome ekf = run_filter(drive);
-  const Outcome full = run_window(drive, PreintegrationModel::full);
+  const Outcome full = run_window(drive, preintegration::PreintegrationModel::full);
   EXPECT_LT(relative_deviation(full.back.covariance, ekf.back.covariance), 0.005);
   EXPECT_LT((full.back.value - ekf.back.value).norm(), 0.005 * ekf.back.value.norm());
   EXPECT_LT(relative_deviation(full.end.covariance, ekf.end.covariance), 0.005);
-  EXPECT_LT(largest_horizontal_error(run_window(drive, PreintegrationModel::refined)), 4);
+  EXPECT_LT(
+      largest_horizontal_error(run_window(drive, preintegration::PreintegrationModel::refined)), 4);
 }
 
 TEST_P(ConstantBias, SmoothersAgree) {
   const Drive drive{"city", GetParam()(), 60, 50};
-  const std::deque<SmoothedEpoch> filtered = rts(drive);
-  const std::deque<SmoothedEpoch> optimized = batch(drive);
+  const std::deque<measurement::SmoothedEpoch> filtered = rts(drive);
+  const std::deque<measurement::SmoothedEpoch> optimized = batch(drive);
   ASSERT_EQ(filtered.size(), optimized.size());
   for (std::size_t k = 200; k < filtered.size(); ++k) {
-    const Epoch a = filtered[k].epoch();
-    const Epoch b = optimized[k].epoch();
+    const state::Epoch a = filtered[k].epoch();
+    const state::Epoch b = optimized[k].epoch();
     EXPECT_LT(relative_deviation(b.covariance, a.covariance), 0.005) << k;
-    const NodeVector sigma = a.covariance.diagonal().cwiseSqrt();
+    const state::NodeVector sigma = a.covariance.diagonal().cwiseSqrt();
     EXPECT_LT(error_of(b, a).cwiseQuotient(sigma).cwiseAbs().maxCoeff(), 0.1) << k;
   }
 }
 
 /// Simulations may be without any noise; the filter and its smoother take that as it is.
 TEST(NoNoise, IsTakenByTheFilter) {
-  const Drive drive{"city", ImuNoise{}, 60};
+  const Drive drive{"city", imu::ImuNoise{}, 60};
   const Outcome ekf = run_filter(drive);
   EXPECT_LT(ekf.back.value.norm(), 0.1);
   EXPECT_TRUE(ekf.end.covariance.allFinite());
-  for (const SmoothedEpoch& node : rts(drive)) {
+  for (const measurement::SmoothedEpoch& node : rts(drive)) {
     EXPECT_TRUE(node.covariance.full().allFinite());
     EXPECT_GE(node.covariance.full().diagonal().minCoeff(), 0);
     EXPECT_TRUE(node.after.allFinite());
@@ -255,24 +259,24 @@ TEST(NoNoise, IsTakenByTheFilter) {
 }
 
 TEST(NoNoise, IsRefusedByGraphsWithItsKey) {
-  const auto refusal = [](double ImuNoise::*a, double ImuNoise::*b) -> std::string {
-    ImuNoise noise = imu_preset("ADIS16465");
+  const auto refusal = [](double imu::ImuNoise::*a, double imu::ImuNoise::*b) -> std::string {
+    imu::ImuNoise noise = imu::imu_preset("ADIS16465");
     noise.*a = noise.*b = 0;
     try {
-      WindowNavigator(FgoOptions{}, PreintegrationModel::full, noise);
+      fgo::WindowNavigator(fgo::FgoOptions{}, preintegration::PreintegrationModel::full, noise);
     } catch (const UsageError& error) {
       return error.what();
     }
     return "";
   };
   using ::testing::HasSubstr;
-  EXPECT_THAT(refusal(&ImuNoise::gyro_noise_density, &ImuNoise::gyro_noise_density),
+  EXPECT_THAT(refusal(&imu::ImuNoise::gyro_noise_density, &imu::ImuNoise::gyro_noise_density),
               HasSubstr("imu.arw_deg_sqrt_h is 0"));
-  EXPECT_THAT(refusal(&ImuNoise::accel_noise_density, &ImuNoise::accel_noise_density),
+  EXPECT_THAT(refusal(&imu::ImuNoise::accel_noise_density, &imu::ImuNoise::accel_noise_density),
               HasSubstr("imu.vrw_m_s_sqrt_h is 0"));
-  EXPECT_THAT(refusal(&ImuNoise::gyro_bias_sigma, &ImuNoise::gyro_turn_on_sigma),
+  EXPECT_THAT(refusal(&imu::ImuNoise::gyro_bias_sigma, &imu::ImuNoise::gyro_turn_on_sigma),
               HasSubstr("imu.gyro_bias_deg_h and imu.gyro_turn_on_deg_h are both 0"));
-  EXPECT_THAT(refusal(&ImuNoise::accel_bias_sigma, &ImuNoise::accel_turn_on_sigma),
+  EXPECT_THAT(refusal(&imu::ImuNoise::accel_bias_sigma, &imu::ImuNoise::accel_turn_on_sigma),
               HasSubstr("imu.accel_bias_mgal and imu.accel_turn_on_mgal are both 0"));
 }
 

@@ -22,10 +22,10 @@ using ::testing::HasSubstr;
 
 const std::vector<std::string> kMethods{"ekf", "full", "rts", "batch"};
 
-std::vector<FaultOutcome> run(const std::string& fault, int64_t seed = 1) {
+std::vector<laboratory::FaultOutcome> run(const std::string& fault, int64_t seed = 1) {
   const test::TestFolder folder;
-  return run_fault(find_fault_case(fault), kMethods, Settings(), seed,
-                   folder / (fault + ".rawlog"));
+  return app::run_fault(laboratory::find_fault_case(fault), kMethods, Settings(), seed,
+                        folder / (fault + ".rawlog"));
 }
 
 /// Off in position, not in motion: no drift of the state looks so. The limits are three times what
@@ -39,7 +39,7 @@ TEST(Returns, WrongFixesAfterAnOutageAreLeftOut) {
   for (const Expected& expected :
        {Expected{"return_5s_5s_5m", 5, 0.3, 0.1}, Expected{"return_5s_60s_5m", 60, 14, 1},
         Expected{"return_20s_15s_20m", 15, 3, 0.3}, Expected{"return_60s_15s_100m", 15, 19, 1}}) {
-    for (const FaultOutcome& outcome : run(expected.fault)) {
+    for (const laboratory::FaultOutcome& outcome : run(expected.fault)) {
       const bool smoothed = outcome.method == "rts" || outcome.method == "batch";
       EXPECT_EQ(outcome.rejected, expected.wrong) << expected.fault << outcome.method;
       EXPECT_LT(outcome.largest_m, smoothed ? expected.smoothed_m : expected.forward_m)
@@ -50,9 +50,10 @@ TEST(Returns, WrongFixesAfterAnOutageAreLeftOut) {
 }
 
 TEST(Returns, TrueFixesAreBelievedWhateverTheNoise) {
-  for (const ReturnCase& what : {ReturnCase{"", 0.1, 15, "ekf"}, ReturnCase{"", 0.1, 60, "rough"},
-                                 ReturnCase{"", 0.1, 60, "rts"}, ReturnCase{"", 10, 60, "full"}}) {
-    const ReturnOutcome outcome = study_return(what, Settings());
+  for (const laboratory::ReturnCase& what :
+       {laboratory::ReturnCase{"", 0.1, 15, "ekf"}, laboratory::ReturnCase{"", 0.1, 60, "rough"},
+        laboratory::ReturnCase{"", 0.1, 60, "rts"}, laboratory::ReturnCase{"", 10, 60, "full"}}) {
+    const laboratory::ReturnOutcome outcome = app::study_return(what, Settings());
     EXPECT_GE(outcome.outages, 5);
     EXPECT_LE(outcome.ratio(), 1.1) << what.noise << " " << what.length_s << what.method;
     EXPECT_LE(outcome.longest_s, 5) << what.noise << " " << what.length_s << what.method;
@@ -60,26 +61,29 @@ TEST(Returns, TrueFixesAreBelievedWhateverTheNoise) {
 }
 
 TEST(Returns, ABetterQualityAloneMakesNoFixTrue) {
-  for (const FaultOutcome& outcome : run("wrong_after_float")) {
+  for (const laboratory::FaultOutcome& outcome : run("wrong_after_float")) {
     EXPECT_GE(outcome.rejected, 5) << outcome.method;  // until it is known what to correct them by
     EXPECT_LT(outcome.largest_m, 0.1) << outcome.method;
   }
-  for (const FaultOutcome& outcome : run("outliers_float")) {
+  for (const laboratory::FaultOutcome& outcome : run("outliers_float")) {
     EXPECT_GT(outcome.rejected, 25) << outcome.method;
     EXPECT_LT(outcome.largest_m, 0.1) << outcome.method;
   }
 }
 
 /// Fixes that `ekf` does not use as they are, of a trip with faults.
-int left_out(const ScenarioOptions& scenario, const std::vector<Fault>& faults,
-             const Settings& settings) {
-  struct Count : Sink {
-    void fix(const FixResult& fix) override { fixes += fix.verdict != FixVerdict::used; }
+int left_out(const simulation::ScenarioOptions& scenario,
+             const std::vector<simulation::Fault>& faults, const Settings& settings) {
+  struct Count : state::Sink {
+    void fix(const state::FixResult& fix) override {
+      fixes += fix.verdict != state::FixVerdict::used;
+    }
     int fixes = 0;
   } count;
-  FaultySource source(std::make_unique<SimulatedSource>(scenario, imu_preset("ADIS16465")), faults,
-                      1);
-  const std::unique_ptr<Estimator> estimator =
+  simulation::FaultySource source(
+      std::make_unique<simulation::SimulatedSource>(scenario, imu::imu_preset("ADIS16465")), faults,
+      1);
+  const std::unique_ptr<state::Estimator> estimator =
       find_method("ekf").make(settings, source.mounting(), count);
   while (const std::optional<Measurement> m = source.next()) estimator->process(*m);
   estimator->finish();
@@ -88,12 +92,12 @@ int left_out(const ScenarioOptions& scenario, const std::vector<Fault>& faults,
 
 /// The wrong ones end while the first fixes are still being weighed.
 TEST(Returns, NoTrueFixIsLeftOutAfterAJumpAtTenHertz) {
-  ScenarioOptions scenario = fault_scenario(1);
+  simulation::ScenarioOptions scenario = laboratory::fault_scenario(1);
   scenario.duration_s = 260;
   scenario.gnss_rate_hz = 10;
   EXPECT_EQ(left_out(scenario,
-                     {{FaultKind::fix_gap, kFaultStart, 20},
-                      {FaultKind::fix_jump, kFaultStart + 20, 4, 20}},
+                     {{simulation::FaultKind::fix_gap, laboratory::kFaultStart, 20},
+                      {simulation::FaultKind::fix_jump, laboratory::kFaultStart + 20, 4, 20}},
                      Settings()),
             40);
 }
@@ -103,17 +107,17 @@ TEST(Returns, RareFixesAreBelieved) {
   Settings settings;
   settings.imu = settings.imu.scaled(0.1);
   for (const double period_s : {5, 32}) {
-    std::vector<Fault> gaps;
-    for (double t = kFaultStart; t < 440; t += period_s) {
-      gaps.push_back({FaultKind::fix_gap, t, period_s - 1});
+    std::vector<simulation::Fault> gaps;
+    for (double t = laboratory::kFaultStart; t < 440; t += period_s) {
+      gaps.push_back({simulation::FaultKind::fix_gap, t, period_s - 1});
     }
-    EXPECT_EQ(left_out(fault_scenario(1), gaps, settings), 0) << period_s;
+    EXPECT_EQ(left_out(laboratory::fault_scenario(1), gaps, settings), 0) << period_s;
   }
 }
 
 /// The fixes jump to the truth at 200 s. It is understood 90 s later, and used from the jump on.
 TEST(Returns, WhatIsUnderstoodLaterCountsFromItsBeginning) {
-  for (const FaultOutcome& outcome : run("jump_back")) {
+  for (const laboratory::FaultOutcome& outcome : run("jump_back")) {
     EXPECT_EQ(outcome.rejected, 0) << outcome.method;
     ASSERT_TRUE(outcome.recovery_s.has_value()) << outcome.method;
     EXPECT_LE(*outcome.recovery_s, 1) << outcome.method;

@@ -25,9 +25,9 @@ namespace {
 using Change = std::function<void(ImuIncrement&)>;
 
 /// A recording with other increments.
-class ChangedImu : public Source {
+class ChangedImu : public state::Source {
  public:
-  ChangedImu(std::unique_ptr<Source> source, Change change)
+  ChangedImu(std::unique_ptr<state::Source> source, Change change)
       : source_(std::move(source)), change_(std::move(change)) {}
 
   std::optional<Measurement> next() override {
@@ -36,37 +36,39 @@ class ChangedImu : public Source {
     if (auto* increment = std::get_if<ImuIncrement>(&*measurement)) change_(*increment);
     return measurement;
   }
-  const Mounting& mounting() const override { return source_->mounting(); }
+  const state::Mounting& mounting() const override { return source_->mounting(); }
   double progress() const override { return source_->progress(); }
 
  private:
-  std::unique_ptr<Source> source_;
+  std::unique_ptr<state::Source> source_;
   Change change_;
 };
 
 constexpr double kThroughout = std::numeric_limits<double>::infinity();
 
 /// A city trip with RTK at 1 Hz.
-std::unique_ptr<Source> trip(int64_t seed = 1, const ImuNoise& noise = imu_preset("ADIS16465")) {
-  ScenarioOptions scenario;
+std::unique_ptr<state::Source> trip(int64_t seed = 1,
+                                    const imu::ImuNoise& noise = imu::imu_preset("ADIS16465")) {
+  simulation::ScenarioOptions scenario;
   scenario.duration_s = 300;
   scenario.imu_rate_hz = 100;
   scenario.seed = seed;
-  return std::make_unique<SimulatedSource>(scenario, noise);
+  return std::make_unique<simulation::SimulatedSource>(scenario, noise);
 }
 
-std::unique_ptr<Source> with_fault(const Fault& fault, int64_t seed = 1) {
-  return std::make_unique<FaultySource>(trip(seed), std::vector<Fault>{fault}, seed);
+std::unique_ptr<state::Source> with_fault(const simulation::Fault& fault, int64_t seed = 1) {
+  return std::make_unique<simulation::FaultySource>(trip(seed),
+                                                    std::vector<simulation::Fault>{fault}, seed);
 }
 
-std::unique_ptr<Source> with_imu(Change change) {
+std::unique_ptr<state::Source> with_imu(Change change) {
   return std::make_unique<ChangedImu>(trip(), std::move(change));
 }
 
-RunMetrics run(std::unique_ptr<Source> source, const std::string& method,
-               const Settings& settings = {}) {
-  RunMetricsCollector collector(source->mounting());
-  const std::unique_ptr<Estimator> estimator =
+evaluation::RunMetrics run(std::unique_ptr<state::Source> source, const std::string& method,
+                           const Settings& settings = {}) {
+  evaluation::RunMetricsCollector collector(source->mounting());
+  const std::unique_ptr<state::Estimator> estimator =
       find_method(method).make(settings, source->mounting(), collector);
   while (const std::optional<Measurement> measurement = source->next()) {
     estimator->process(*measurement);
@@ -75,7 +77,7 @@ RunMetrics run(std::unique_ptr<Source> source, const std::string& method,
   return collector.metrics();
 }
 
-std::string text(const RunMetrics& m) {
+std::string text(const evaluation::RunMetrics& m) {
   std::string text = "size " + std::to_string(std::sqrt(m.gnss.mean_nis / 3)) + " of " +
                      std::to_string(m.gnss.used) + ", rejected " + std::to_string(m.gnss.rejected);
   for (const std::string& reason : m.trust.reasons) text += "\n" + reason;
@@ -88,7 +90,7 @@ INSTANTIATE_TEST_SUITE_P(Methods, Trusted,
 
 TEST_P(Trusted, CleanTrips) {
   for (const int64_t seed : {1, 2, 3}) {
-    const RunMetrics m = run(trip(seed), GetParam());
+    const evaluation::RunMetrics m = run(trip(seed), GetParam());
     EXPECT_TRUE(m.trust.trustworthy) << text(m);
     // The Earth's rotation neglected shows, with this IMU.
     EXPECT_EQ(m.trust.reasons.empty(), GetParam() != "rough") << text(m);
@@ -96,11 +98,12 @@ TEST_P(Trusted, CleanTrips) {
 }
 
 TEST_P(Trusted, TripsWithOutliersOrAHoleInTheImu) {
-  const RunMetrics outliers =
-      run(with_fault({FaultKind::fix_outliers, 0, kThroughout, 0.1}), GetParam());
+  const evaluation::RunMetrics outliers =
+      run(with_fault({simulation::FaultKind::fix_outliers, 0, kThroughout, 0.1}), GetParam());
   EXPECT_GT(outliers.gnss.rejected, 10);
   EXPECT_TRUE(outliers.trust.trustworthy) << text(outliers);
-  const RunMetrics hole = run(with_fault({FaultKind::imu_gap, 150, 60}), GetParam());
+  const evaluation::RunMetrics hole =
+      run(with_fault({simulation::FaultKind::imu_gap, 150, 60}), GetParam());
   EXPECT_TRUE(hole.trust.trustworthy) << text(hole);
 }
 
@@ -109,9 +112,9 @@ INSTANTIATE_TEST_SUITE_P(Methods, Condemned,
                          ::testing::Values("ekf", "refined", "rough", "full", "rts", "batch"));
 
 /// Or refused before: a recording that is as wrong as that need not be processed.
-void expect_condemned(std::unique_ptr<Source> source, const std::string& method) {
+void expect_condemned(std::unique_ptr<state::Source> source, const std::string& method) {
   try {
-    const RunMetrics m = run(std::move(source), method);
+    const evaluation::RunMetrics m = run(std::move(source), method);
     ::testing::Test::RecordProperty("size", std::to_string(std::sqrt(m.gnss.mean_nis / 3)));
     EXPECT_FALSE(m.trust.trustworthy) << text(m);
   } catch (const DataError& error) {
@@ -121,7 +124,7 @@ void expect_condemned(std::unique_ptr<Source> source, const std::string& method)
 
 /// A consumer's IMU with the noise of an industrial one.
 TEST_P(Condemned, NoiseOfAnotherClass) {
-  ImuNoise vibrating = imu_preset("ADIS16465");
+  imu::ImuNoise vibrating = imu::imu_preset("ADIS16465");
   vibrating.gyro_noise_density *= 20;
   vibrating.accel_noise_density *= 50;
   expect_condemned(trip(1, vibrating), GetParam());
@@ -144,7 +147,8 @@ TEST_P(Condemned, HalfATurnAboutTheVertical) {
 }
 
 TEST_P(Condemned, ClocksThreeTenthsOfASecondApart) {
-  expect_condemned(with_fault({FaultKind::imu_stamps_offset, 0, kThroughout, 0.3}), GetParam());
+  expect_condemned(with_fault({simulation::FaultKind::imu_stamps_offset, 0, kThroughout, 0.3}),
+                   GetParam());
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ inline constexpr double kFixSigma = 0.3;       // [m]
 inline constexpr double kEstimateSigma = 0.4;  // [m]
 
 /// A vehicle at rest at kHome: fixes of its antenna at 2 Hz, references at 4 Hz, IMU at 4 Hz.
-class RestSource : public Source {
+class RestSource : public state::Source {
  public:
   RestSource(double duration_s, bool with_reference)
       : end_(static_cast<int>(4 * duration_s)), with_reference_(with_reference) {}
@@ -34,14 +34,14 @@ class RestSource : public Source {
     }
     return std::nullopt;
   }
-  const Mounting& mounting() const override { return mounting_; }
+  const state::Mounting& mounting() const override { return mounting_; }
   double progress() const override { return static_cast<double>(tick_) / end_; }
 
  private:
   static GnssFix fix(int64_t t_ns) {
     GnssFix fix;
     fix.t_ns = t_ns;
-    fix.antenna = LocalFrame(kHome).to_geodetic(kLeverArm);
+    fix.antenna = geodesy::LocalFrame(kHome).to_geodetic(kLeverArm);
     fix.position_covariance = kFixSigma * kFixSigma * Eigen::Matrix3d::Identity();
     fix.p_b_a = kLeverArm;
     return fix;
@@ -63,14 +63,14 @@ class RestSource : public Source {
   bool with_reference_;
   int tick_ = 0;
   int kind_ = 0;
-  Mounting mounting_;
+  state::Mounting mounting_;
 };
 
 /// Drifts north by `scale` times 0.01 m/s^2 t^2 and down by 0.1 m/s t since its last fix, and says
 /// that each of its positions has kEstimateSigma.
-class DriftingEstimator : public Estimator {
+class DriftingEstimator : public state::Estimator {
  public:
-  explicit DriftingEstimator(Sink& sink, double scale = 1) : sink_(sink), scale_(scale) {}
+  explicit DriftingEstimator(state::Sink& sink, double scale = 1) : sink_(sink), scale_(scale) {}
 
   void process(const Measurement& measurement) override {
     if (const auto* fix = std::get_if<GnssFix>(&measurement)) last_fix_ns_ = fix->t_ns;
@@ -81,14 +81,14 @@ class DriftingEstimator : public Estimator {
  private:
   void emit(int64_t t_ns) {
     const double t = seconds_between(last_fix_ns_, t_ns);
-    Epoch epoch;
+    state::Epoch epoch;
     epoch.t_ns = t_ns;
-    epoch.position = LocalFrame(kHome).to_geodetic({scale_ * 0.01 * t * t, 0, 0.1 * t});
+    epoch.position = geodesy::LocalFrame(kHome).to_geodetic({scale_ * 0.01 * t * t, 0, 0.1 * t});
     epoch.covariance.diagonal().head<3>().setConstant(kEstimateSigma * kEstimateSigma);
     sink_.epoch(epoch);
   }
 
-  Sink& sink_;
+  state::Sink& sink_;
   double scale_;
   int64_t last_fix_ns_ = 0;
 };

@@ -14,42 +14,43 @@
 namespace foucault::app {
 namespace {
 
-const char* name_of(Severity severity) {
+const char* name_of(diagnosis::Severity severity) {
   switch (severity) {
-    case Severity::ok:
+    case diagnosis::Severity::ok:
       return "ok";
-    case Severity::warning:
+    case diagnosis::Severity::warning:
       return "warning";
-    case Severity::error:
+    case diagnosis::Severity::error:
       return "error";
   }
   return "";
 }
 
-void print(const std::vector<Finding>& findings) {
-  for (const Finding& finding : findings) {
+void print(const std::vector<diagnosis::Finding>& findings) {
+  for (const diagnosis::Finding& finding : findings) {
     fmt::print("{:<8} {:<20} {}\n", name_of(finding.severity), finding.subject, finding.text);
     if (!finding.remedy.empty()) fmt::print("{:<8} {:<20} -> {}\n", "", "", finding.remedy);
   }
 }
 
 void check(const std::string& log, const Settings& settings, Console& console) {
-  RawlogSource source(log, settings.imu.sample_kind(), settings.rawlog);
-  LogChecker checker(settings.imu.noise(), source.mounting());
+  rawlog::RawlogSource source(log, settings.imu.sample_kind(), settings.rawlog);
+  diagnosis::LogChecker checker(settings.imu.noise(), source.mounting());
   while (const std::optional<Measurement> measurement = source.next()) {
     checker.add(*measurement);
     console.progress("checking", source.progress());
   }
   console.clear_progress();
-  const std::vector<Finding> findings = checker.findings();
+  const std::vector<diagnosis::Finding> findings = checker.findings();
   print(findings);
-  for (const Notice& notice : source.notices()) {
+  for (const state::Notice& notice : source.notices()) {
     fmt::print("{:<8} {:<20} {}\n", "warning", "log", notice.text);
   }
   if (source.damage()) throw DataError(*source.damage());
-  const auto errors = std::count_if(findings.begin(), findings.end(), [](const Finding& finding) {
-    return finding.severity == Severity::error;
-  });
+  const auto errors =
+      std::count_if(findings.begin(), findings.end(), [](const diagnosis::Finding& finding) {
+        return finding.severity == diagnosis::Severity::error;
+      });
   if (errors > 0) {
     throw DataError(
         fmt::format("'{}': {} of the findings above must be mended first", log, errors));

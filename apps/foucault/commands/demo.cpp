@@ -18,7 +18,7 @@ using laboratory::PaperExperiment;
 
 struct DemoOptions {
   bool full = false;
-  int jobs = processor_count();
+  int jobs = evaluation::processor_count();
   std::string out = "foucault-demo";
 };
 
@@ -29,12 +29,12 @@ PaperExperiment experiment_of(const DemoOptions& options) {
 
 void evaluate_into(const std::vector<EvaluationCase>& cases, const EvaluationLabels& labels,
                    int jobs, const std::filesystem::path& folder, Console& console) {
-  const EvaluationSummary summary(evaluate(cases, jobs, console));
+  const evaluation::EvaluationSummary summary(evaluate(cases, jobs, console));
   std::filesystem::create_directories(folder);
   write_evaluation(summary, labels, true, folder, console);
   console.say("");
   console.say(labels.title);
-  console.say(evaluation_lines(summary));
+  console.say(evaluation::evaluation_lines(summary));
 }
 
 void main_job(const PaperExperiment& experiment, const std::filesystem::path& recordings,

@@ -21,7 +21,7 @@ struct EvaluateOptions {
   std::vector<std::string> logs;
   std::vector<std::string> methods{"ekf", "refined", "rough"};
   ConfigArguments config;
-  int jobs = processor_count();
+  int jobs = evaluation::processor_count();
   std::string out;
   bool no_report = false;
 };
@@ -42,11 +42,11 @@ void evaluate_logs(const EvaluateOptions& options, Call& call) {
   const std::vector<EvaluationCase> cases = cross(options.logs, options.methods, settings);
   OutputDirectory directory(options.out);
   Evaluation evaluation = evaluate_what_is_there(cases, options.jobs, call.console);
-  const EvaluationSummary summary(std::move(evaluation.results));
+  const evaluation::EvaluationSummary summary(std::move(evaluation.results));
   write_evaluation(summary, labels(settings, call.command_line), !options.no_report,
                    directory.staging(), call.console);
   directory.commit();
-  call.console.say(evaluation_lines(summary));
+  call.console.say(evaluation::evaluation_lines(summary));
   call.console.say(written_lines(options.out, !options.no_report));
   std::vector<std::string> lacking = evaluation.damages;
   lacking.insert(lacking.end(), evaluation.failures.begin(), evaluation.failures.end());

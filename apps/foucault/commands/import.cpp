@@ -20,7 +20,7 @@ namespace {
 
 using Action = std::function<void(Call&)>;
 
-std::string stream_line(const std::string& name, const ImportStream& s) {
+std::string stream_line(const std::string& name, const rawlog::ImportStream& s) {
   std::string line = fmt::format("{:<10} {} from {}, {} .. {} ({:.1f} s)", name, s.written, s.file,
                                  utc_text(s.first_ns), utc_text(s.last_ns),
                                  seconds_between(s.first_ns, s.last_ns));
@@ -28,7 +28,7 @@ std::string stream_line(const std::string& name, const ImportStream& s) {
   return line;
 }
 
-void report_stream(Console& console, const std::string& name, const ImportStream& s) {
+void report_stream(Console& console, const std::string& name, const rawlog::ImportStream& s) {
   console.say(stream_line(name, s));
   if (s.skipped > 0) {
     console.warn(
@@ -36,7 +36,8 @@ void report_stream(Console& console, const std::string& name, const ImportStream
   }
 }
 
-void report_summary(Console& console, const ImportSummary& summary, const std::string& out) {
+void report_summary(Console& console, const rawlog::ImportSummary& summary,
+                    const std::string& out) {
   report_stream(console, "IMU", summary.imu);
   report_stream(console, "GNSS", summary.gnss);
   if (summary.reference) report_stream(console, "reference", *summary.reference);
@@ -56,7 +57,7 @@ void report_summary(Console& console, const ImportSummary& summary, const std::s
   console.say(fmt::format("{:<10} {}", "written", out));
 }
 
-void add_common(CLI::App& app, ImportOptions& options) {
+void add_common(CLI::App& app, rawlog::ImportOptions& options) {
   app.add_option("--out", options.out, "Rawlog to write")->required();
   app.add_flag("--skip-bad-rows", options.skip_bad_rows,
                "Leave out rows that are wrong, and count them, instead of stopping");
@@ -67,7 +68,7 @@ constexpr const char* kLeverArmHelp =
 
 Action declare_i2nav(CLI::App& app) {
   struct Options {
-    I2navImport import;
+    rawlog::I2navImport import;
     std::string lever_arm;
   };
   const auto o = std::make_shared<Options>();
@@ -85,13 +86,13 @@ Action declare_i2nav(CLI::App& app) {
   return [o](Call& call) {
     o->import.lever_arm = parse_vector3("--lever-arm", o->lever_arm);
     o->import.progress = call.console.progress_of("importing");
-    report_summary(call.console, import_i2nav(o->import), o->import.out);
+    report_summary(call.console, rawlog::import_i2nav(o->import), o->import.out);
   };
 }
 
 /// `rtklib` and `csv` take the same options.
 template <class Import>
-Action declare_mapped(CLI::App& app, ImportSummary (*import)(const Import&),
+Action declare_mapped(CLI::App& app, rawlog::ImportSummary (*import)(const Import&),
                       const char* gnss_help) {
   struct Options {
     Import import;
@@ -116,7 +117,7 @@ Action declare_mapped(CLI::App& app, ImportSummary (*import)(const Import&),
 }
 
 std::string mapping_help() {
-  ImportMapping mapping;
+  rawlog::ImportMapping mapping;
   return describe_config(mapping);
 }
 
@@ -136,10 +137,10 @@ Action declare_import(CLI::App& app) {
   CLI::App* csv = app.add_subcommand("csv", "Tables in columns, told by a mapping");
   for (CLI::App* format : {i2nav, rtklib, csv}) format->fallthrough();
   const Action import_from_i2nav = declare_i2nav(*i2nav);
-  const Action import_from_rtklib = declare_mapped<RtklibImport>(
-      *rtklib, import_rtklib, "RTKLIB's .pos, instead of the mapping's");
-  const Action import_from_csv =
-      declare_mapped<CsvImport>(*csv, import_csv, "GNSS table, instead of the mapping's");
+  const Action import_from_rtklib = declare_mapped<rawlog::RtklibImport>(
+      *rtklib, rawlog::import_rtklib, "RTKLIB's .pos, instead of the mapping's");
+  const Action import_from_csv = declare_mapped<rawlog::CsvImport>(
+      *csv, rawlog::import_csv, "GNSS table, instead of the mapping's");
   for (CLI::App* format : {rtklib, csv}) {
     add_help_text(*format, "--help-mapping",
                   "List every key of a mapping, with default and meaning", mapping_help);

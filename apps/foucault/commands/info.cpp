@@ -19,7 +19,8 @@ std::function<void(Call&)> declare_info(CLI::App& app) {
   app.add_option("LOG", options->log, "Rawlog, plain or compressed")->required();
   app.add_flag("--json", options->json, "Print JSON for other programs");
   return [options](Call& call) {
-    const RawlogInfo info = read_rawlog_info(options->log, call.console.progress_of("reading"));
+    const rawlog::RawlogInfo info =
+        rawlog::read_rawlog_info(options->log, call.console.progress_of("reading"));
     call.console.clear_progress();
     fmt::print("{}", options->json ? rawlog_json(info) : rawlog_text(info));
     if (info.damage) throw DataError(*info.damage);

@@ -20,7 +20,7 @@ struct FaultStudyOptions {
   std::vector<std::string> faults;
   std::vector<std::string> methods{"ekf", "refined", "full"};
   std::vector<int64_t> seeds{1};
-  int jobs = processor_count();
+  int jobs = evaluation::processor_count();
   std::string out = "foucault-faults";
 };
 
@@ -32,12 +32,13 @@ struct FaultTask {
 std::vector<FaultTask> fault_tasks(const FaultStudyOptions& options) {
   std::vector<std::string> names = options.faults;
   if (names.empty()) {
-    for (const FaultCase& fault : fault_cases()) names.push_back(fault.name);
+    for (const laboratory::FaultCase& fault : laboratory::fault_cases())
+      names.push_back(fault.name);
   }
   for (const std::string& method : options.methods) find_method(method);
   std::vector<FaultTask> tasks;
   for (const std::string& name : names) {
-    find_fault_case(name);
+    laboratory::find_fault_case(name);
     for (const int64_t seed : options.seeds) tasks.push_back({name, seed});
   }
   return tasks;
@@ -46,24 +47,26 @@ std::vector<FaultTask> fault_tasks(const FaultStudyOptions& options) {
 void study_faults(const FaultStudyOptions& options, Call& call) {
   const std::vector<FaultTask> tasks = fault_tasks(options);
   OutputDirectory directory(options.out);
-  std::vector<std::vector<FaultOutcome>> results(tasks.size());
-  run_tasks(
+  std::vector<std::vector<laboratory::FaultOutcome>> results(tasks.size());
+  evaluation::run_tasks(
       tasks.size(), options.jobs,
-      [&](std::size_t i, const TaskProgress& progress) {
+      [&](std::size_t i, const evaluation::TaskProgress& progress) {
         progress(0);
         const FaultTask& task = tasks[i];
         const std::filesystem::path log =
             directory.staging() / fmt::format("{}-{}.rawlog", task.fault, task.seed);
-        results[i] = run_fault(find_fault_case(task.fault), options.methods, Settings(), task.seed,
-                               log.string());
+        results[i] = run_fault(laboratory::find_fault_case(task.fault), options.methods, Settings(),
+                               task.seed, log.string());
       },
       call.console.progress_of("faults"));
-  std::vector<FaultOutcome> outcomes;
+  std::vector<laboratory::FaultOutcome> outcomes;
   for (const auto& result : results) {
     outcomes.insert(outcomes.end(), result.begin(), result.end());
   }
-  exports::write_text_file(directory.staging() / "faults.csv", to_csv(fault_table(outcomes)));
-  exports::write_text_file(directory.staging() / "faults.md", to_markdown(fault_summary(outcomes)));
+  exports::write_text_file(directory.staging() / "faults.csv",
+                           evaluation::to_csv(laboratory::fault_table(outcomes)));
+  exports::write_text_file(directory.staging() / "faults.md",
+                           evaluation::to_markdown(laboratory::fault_summary(outcomes)));
   directory.commit();
   call.console.say(written_lines(options.out, false));
 }

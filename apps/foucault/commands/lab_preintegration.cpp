@@ -19,19 +19,21 @@ namespace {
 using namespace laboratory;
 
 struct PreintegrationOptions {
-  std::vector<std::string> motions = lab_motion_names();
-  int jobs = processor_count();
+  std::vector<std::string> motions = laboratory::lab_motion_names();
+  int jobs = evaluation::processor_count();
   std::string out = "foucault-lab";
   bool no_report = false;
 };
 
-MotionStudy study_motion(const LabMotion& motion, const StudyPlan& plan, int jobs,
-                         Console& console) {
-  const PreintegrationStudy study(motion, plan);
-  std::vector<PreintegrationStudy::Record> records(static_cast<std::size_t>(study.intervals()));
-  run_tasks(
+laboratory::MotionStudy study_motion(const laboratory::LabMotion& motion,
+                                     const laboratory::StudyPlan& plan, int jobs,
+                                     Console& console) {
+  const laboratory::PreintegrationStudy study(motion, plan);
+  std::vector<laboratory::PreintegrationStudy::Record> records(
+      static_cast<std::size_t>(study.intervals()));
+  evaluation::run_tasks(
       records.size(), jobs,
-      [&](std::size_t i, const TaskProgress& progress) {
+      [&](std::size_t i, const evaluation::TaskProgress& progress) {
         progress(0);
         records[i] = study.measure(static_cast<int>(i));
       },
@@ -40,23 +42,23 @@ MotionStudy study_motion(const LabMotion& motion, const StudyPlan& plan, int job
 }
 
 void study_preintegration(const PreintegrationOptions& options, Call& call) {
-  std::vector<LabMotion> motions;
-  for (const std::string& name : options.motions) motions.push_back(lab_motion(name));
+  std::vector<laboratory::LabMotion> motions;
+  for (const std::string& name : options.motions) motions.push_back(laboratory::lab_motion(name));
   OutputDirectory directory(options.out);
-  StudyResult result;
+  laboratory::StudyResult result;
   result.command_line = call.command_line;
   result.version = kVersion;
-  for (const LabMotion& motion : motions) {
+  for (const laboratory::LabMotion& motion : motions) {
     result.motions.push_back(study_motion(motion, result.plan, options.jobs, call.console));
   }
-  write_laboratory(result, directory.staging());
+  laboratory::write_laboratory(result, directory.staging());
   if (!options.no_report) {
     call.console.progress("drawing", 0);
     page::write_report(content::laboratory_page(laboratory_report(result)),
                        (directory.staging() / "report").string());
   }
   directory.commit();
-  call.console.say(laboratory_lines(result));
+  call.console.say(laboratory::laboratory_lines(result));
   call.console.say(written_lines(options.out, !options.no_report));
 }
 
@@ -67,7 +69,8 @@ Study declare_preintegration_study(CLI::App& lab) {
       "preintegration", "Error of rough, refined and full, and of each term, on exact motion");
   app->fallthrough();
   const auto o = std::make_shared<PreintegrationOptions>();
-  app->add_option("--motion", o->motions, fmt::format("Of {}", fmt::join(lab_motion_names(), ", ")))
+  app->add_option("--motion", o->motions,
+                  fmt::format("Of {}", fmt::join(laboratory::lab_motion_names(), ", ")))
       ->delimiter(',')
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)

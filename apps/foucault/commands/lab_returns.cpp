@@ -21,7 +21,7 @@ struct ReturnStudyOptions {
   ConfigArguments config;
   std::vector<std::string> methods;
   std::vector<double> noise, lengths;
-  int jobs = processor_count();
+  int jobs = evaluation::processor_count();
   std::string out = "foucault-returns";
 };
 
@@ -39,9 +39,9 @@ ReturnStudyOptions completed(ReturnStudyOptions options, const Settings& setting
   return options;
 }
 
-std::vector<ReturnCase> return_cases(const ReturnStudyOptions& options) {
+std::vector<laboratory::ReturnCase> return_cases(const ReturnStudyOptions& options) {
   for (const std::string& method : options.methods) find_method(method);
-  std::vector<ReturnCase> cases;
+  std::vector<laboratory::ReturnCase> cases;
   for (const std::string& log : options.logs) {
     for (const double noise : options.noise) {
       for (const double length_s : options.lengths) {
@@ -58,18 +58,19 @@ void study_returns(const ReturnStudyOptions& given, Call& call) {
   Settings settings;
   apply(given.config, settings);
   const ReturnStudyOptions options = completed(given, settings);
-  const std::vector<ReturnCase> cases = return_cases(options);
+  const std::vector<laboratory::ReturnCase> cases = return_cases(options);
   OutputDirectory directory(options.out);
-  std::vector<ReturnOutcome> outcomes(cases.size());
-  run_tasks(
+  std::vector<laboratory::ReturnOutcome> outcomes(cases.size());
+  evaluation::run_tasks(
       cases.size(), options.jobs,
-      [&](std::size_t i, const TaskProgress& progress) {
+      [&](std::size_t i, const evaluation::TaskProgress& progress) {
         progress(0);
         outcomes[i] = study_return(cases[i], settings);
       },
       call.console.progress_of("returns"));
-  exports::write_text_file(directory.staging() / "returns.csv", to_csv(return_table(outcomes)));
-  const std::string summary = to_markdown(return_summary(outcomes));
+  exports::write_text_file(directory.staging() / "returns.csv",
+                           evaluation::to_csv(return_table(outcomes)));
+  const std::string summary = evaluation::to_markdown(laboratory::return_summary(outcomes));
   exports::write_text_file(directory.staging() / "returns.md", summary);
   directory.commit();
   call.console.say(summary);

@@ -24,7 +24,7 @@ std::function<void(Call&)> declare_tune(CLI::App& app) {
     bool no_report = false;
   };
   const auto o = std::make_shared<Options>();
-  o->job.threads = processor_count();
+  o->job.threads = evaluation::processor_count();
   app.add_option("LOG", o->job.logs, "Rawlogs")->required();
   add_config_options(app, o->config, config_help);
   app.get_option("--config")->required()->description("The grid, YAML");

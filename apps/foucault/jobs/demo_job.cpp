@@ -14,7 +14,7 @@ std::string path_of(const std::filesystem::path& folder, const std::string& reco
 void write_demo_recordings(const laboratory::PaperExperiment& experiment,
                            const std::filesystem::path& folder, Console& console) {
   std::filesystem::create_directories(folder);
-  for (const laboratory::PaperRecording& recording : recordings(experiment)) {
+  for (const laboratory::PaperRecording& recording : laboratory::recordings(experiment)) {
     SimulationSettings settings;
     settings.imu.preset = recording.imu;
     settings.scenario.duration_s = recording.length_s;

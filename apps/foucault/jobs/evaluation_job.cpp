@@ -41,14 +41,14 @@ std::vector<std::string> recording_names(const std::vector<std::string>& logs) {
   return names;
 }
 
-std::unique_ptr<RawlogSource> open_log(const std::string& log, const Settings& settings) {
-  return std::make_unique<RawlogSource>(log, settings.imu.sample_kind(), settings.rawlog);
+std::unique_ptr<rawlog::RawlogSource> open_log(const std::string& log, const Settings& settings) {
+  return std::make_unique<rawlog::RawlogSource>(log, settings.imu.sample_kind(), settings.rawlog);
 }
 
 /// An estimator does not know where its measurements come from; whoever reads its errors should.
-class NamedEstimator : public Estimator {
+class NamedEstimator : public state::Estimator {
  public:
-  NamedEstimator(std::string name, std::unique_ptr<Estimator> estimator)
+  NamedEstimator(std::string name, std::unique_ptr<state::Estimator> estimator)
       : name_(std::move(name)), estimator_(std::move(estimator)) {}
 
   void process(const Measurement& measurement) override {
@@ -68,41 +68,41 @@ class NamedEstimator : public Estimator {
     } catch (const std::bad_alloc&) {
       throw;
     } catch (const std::exception& error) {
-      throw EstimatorFailure(fmt::format("{}: {}", name_, error.what()));
+      throw evaluation::EstimatorFailure(fmt::format("{}: {}", name_, error.what()));
     }
   }
 
   std::string name_;
-  std::unique_ptr<Estimator> estimator_;
+  std::unique_ptr<state::Estimator> estimator_;
 };
 
 /// For comparisons that mean nothing unless the log is whole.
-class WholeSource : public Source {
+class WholeSource : public state::Source {
  public:
-  explicit WholeSource(std::unique_ptr<RawlogSource> source) : source_(std::move(source)) {}
+  explicit WholeSource(std::unique_ptr<rawlog::RawlogSource> source) : source_(std::move(source)) {}
 
   std::optional<Measurement> next() override {
     std::optional<Measurement> measurement = source_->next();
     if (!measurement && source_->damage()) throw DataError(*source_->damage());
     return measurement;
   }
-  const Mounting& mounting() const override { return source_->mounting(); }
+  const state::Mounting& mounting() const override { return source_->mounting(); }
   double progress() const override { return source_->progress(); }
 
  private:
-  std::unique_ptr<RawlogSource> source_;
+  std::unique_ptr<rawlog::RawlogSource> source_;
 };
 
 /// What was left out of each log and where it broke off, from whichever of its readers came to the
 /// end.
 class LogNotices {
  public:
-  void put(const std::string& recording, const RawlogSource& source) {
+  void put(const std::string& recording, const rawlog::RawlogSource& source) {
     const std::lock_guard<std::mutex> lock(mutex_);
     notices_.emplace(recording, source.notices());
     if (source.damage()) damages_.emplace(recording, *source.damage());
   }
-  const std::map<std::string, std::vector<Notice>>& notices() const { return notices_; }
+  const std::map<std::string, std::vector<state::Notice>>& notices() const { return notices_; }
   std::vector<std::string> damages() const {
     std::vector<std::string> damages;
     for (const auto& [recording, damage] : damages_) damages.push_back(damage);
@@ -111,13 +111,14 @@ class LogNotices {
 
  private:
   std::mutex mutex_;
-  std::map<std::string, std::vector<Notice>> notices_;
+  std::map<std::string, std::vector<state::Notice>> notices_;
   std::map<std::string, std::string> damages_;
 };
 
-class NotingSource : public Source {
+class NotingSource : public state::Source {
  public:
-  NotingSource(std::unique_ptr<RawlogSource> source, std::string recording, LogNotices& notices)
+  NotingSource(std::unique_ptr<rawlog::RawlogSource> source, std::string recording,
+               LogNotices& notices)
       : source_(std::move(source)), recording_(std::move(recording)), notices_(notices) {}
 
   std::optional<Measurement> next() override {
@@ -125,23 +126,24 @@ class NotingSource : public Source {
     if (!measurement) notices_.put(recording_, *source_);
     return measurement;
   }
-  const Mounting& mounting() const override { return source_->mounting(); }
+  const state::Mounting& mounting() const override { return source_->mounting(); }
   double progress() const override { return source_->progress(); }
 
  private:
-  std::unique_ptr<RawlogSource> source_;
+  std::unique_ptr<rawlog::RawlogSource> source_;
   std::string recording_;
   LogNotices& notices_;
 };
 
-void warn(const std::string& recording, const std::vector<Notice>& notices, Console& console) {
-  for (const Notice& notice : notices) {
-    if (notice.kind == NoticeKind::aligned) continue;
+void warn(const std::string& recording, const std::vector<state::Notice>& notices,
+          Console& console) {
+  for (const state::Notice& notice : notices) {
+    if (notice.kind == state::NoticeKind::aligned) continue;
     console.warn(fmt::format("{}: {}: {}", recording, utc_text(notice.t_ns), notice.text));
   }
 }
 
-void warn(const ExperimentResult& result, Console& console) {
+void warn(const evaluation::ExperimentResult& result, Console& console) {
   warn(result.recording, result.notices, console);
   const int64_t missing = result.run.scheduled - static_cast<int64_t>(result.run.drifts.size());
   if (missing > 0) {
@@ -169,26 +171,26 @@ std::vector<EvaluationCase> cross(const std::vector<std::string>& logs,
   return cases;
 }
 
-std::vector<ExperimentRun> experiment_runs(const EvaluationCase& evaluation_case) {
+std::vector<evaluation::ExperimentRun> experiment_runs(const EvaluationCase& evaluation_case) {
   const Settings& settings = evaluation_case.settings;
   const Method& method = find_method(evaluation_case.method);
   settings.imu.noise();
   if (settings.outages.shifts_s.empty()) {
     throw UsageError("outages.shifts_s is empty; give at least one shift, such as [0]");
   }
-  std::vector<ExperimentRun> runs;
+  std::vector<evaluation::ExperimentRun> runs;
   for (const double shift_s : settings.outages.shifts_s) {
-    ExperimentRun run;
+    evaluation::ExperimentRun run;
     run.recording = evaluation_case.recording;
     run.imu = evaluation_case.imu;
     run.method = evaluation_case.label.empty() ? method.name : evaluation_case.label;
     run.shift_s = shift_s;
-    run.schedule = OutageSchedule(settings.outages, shift_s);
+    run.schedule = evaluation::OutageSchedule(settings.outages, shift_s);
     run.open = [log = evaluation_case.log, settings] {
       return std::make_unique<WholeSource>(open_log(log, settings));
     };
     run.make_estimator = [make = method.make, settings, name = run.recording](
-                             const Mounting& mounting, Sink& sink) {
+                             const state::Mounting& mounting, state::Sink& sink) {
       return std::make_unique<NamedEstimator>(name, make(settings, mounting, sink));
     };
     run.options.reference.keep_s = method.keep_references_s;
@@ -204,9 +206,9 @@ void check_logs(const std::vector<std::string>& logs, const Settings& settings) 
 Evaluation evaluate_what_is_there(const std::vector<EvaluationCase>& cases, int threads,
                                   Console& console) {
   LogNotices notices;
-  std::vector<ExperimentRun> runs;
+  std::vector<evaluation::ExperimentRun> runs;
   for (const EvaluationCase& c : cases) {
-    for (ExperimentRun& run : experiment_runs(c)) {
+    for (evaluation::ExperimentRun& run : experiment_runs(c)) {
       run.open = [&notices, c] {
         return std::make_unique<NotingSource>(open_log(c.log, c.settings), c.recording, notices);
       };
@@ -215,24 +217,25 @@ Evaluation evaluate_what_is_there(const std::vector<EvaluationCase>& cases, int 
   }
   for (const EvaluationCase& c : cases) check_logs({c.log}, c.settings);
   Evaluation evaluation;
-  evaluation.results = run_experiments(runs, threads, console.progress_of("evaluating"));
-  evaluation.failures = take_out_failed(evaluation.results);
+  evaluation.results =
+      evaluation::run_experiments(runs, threads, console.progress_of("evaluating"));
+  evaluation.failures = evaluation::take_out_failed(evaluation.results);
   if (evaluation.results.empty()) throw DataError(evaluation.failures.front());
   evaluation.damages = notices.damages();
   for (const auto& [recording, of_log] : notices.notices()) warn(recording, of_log, console);
-  for (const ExperimentResult& result : evaluation.results) warn(result, console);
+  for (const evaluation::ExperimentResult& result : evaluation.results) warn(result, console);
   return evaluation;
 }
 
-std::vector<ExperimentResult> evaluate(const std::vector<EvaluationCase>& cases, int threads,
-                                       Console& console) {
+std::vector<evaluation::ExperimentResult> evaluate(const std::vector<EvaluationCase>& cases,
+                                                   int threads, Console& console) {
   Evaluation evaluation = evaluate_what_is_there(cases, threads, console);
   if (!evaluation.damages.empty()) throw DataError(evaluation.damages.front());
   if (!evaluation.failures.empty()) throw DataError(evaluation.failures.front());
   return std::move(evaluation.results);
 }
 
-void write_evaluation(const EvaluationSummary& summary, const EvaluationLabels& labels,
+void write_evaluation(const evaluation::EvaluationSummary& summary, const EvaluationLabels& labels,
                       bool with_report, const std::filesystem::path& folder, Console& console) {
   exports::write_evaluation(summary, labels.origin, folder);
   if (!with_report) return;

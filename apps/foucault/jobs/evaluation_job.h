@@ -28,13 +28,13 @@ std::vector<EvaluationCase> cross(const std::vector<std::string>& logs,
                                   const Settings& settings);
 
 /// The runs of a case, one a shift. Throws UsageError for settings that make no sense.
-std::vector<ExperimentRun> experiment_runs(const EvaluationCase& evaluation_case);
+std::vector<evaluation::ExperimentRun> experiment_runs(const EvaluationCase& evaluation_case);
 
 /// Opens each log once: what is missing or no rawlog shows before hours are spent on others.
 void check_logs(const std::vector<std::string>& logs, const Settings& settings);
 
 struct Evaluation {
-  std::vector<ExperimentResult> results;
+  std::vector<evaluation::ExperimentResult> results;
   std::vector<std::string> damages;   ///< logs that break off, a line each; results are up to there
   std::vector<std::string> failures;  ///< of methods, a line each; they have no results
 };
@@ -46,11 +46,11 @@ Evaluation evaluate_what_is_there(const std::vector<EvaluationCase>& cases, int 
                                   Console& console);
 
 /// The same with a DataError for a log that breaks off and a method that fails.
-std::vector<ExperimentResult> evaluate(const std::vector<EvaluationCase>& cases, int threads,
-                                       Console& console);
+std::vector<evaluation::ExperimentResult> evaluate(const std::vector<EvaluationCase>& cases,
+                                                   int threads, Console& console);
 
 /// The files of an evaluation, and its report if it is asked for.
-void write_evaluation(const EvaluationSummary& summary, const EvaluationLabels& labels,
+void write_evaluation(const evaluation::EvaluationSummary& summary, const EvaluationLabels& labels,
                       bool with_report, const std::filesystem::path& folder, Console& console);
 
 }  // namespace foucault::app

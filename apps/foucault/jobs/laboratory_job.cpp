@@ -24,11 +24,11 @@ void write(const laboratory::FaultCase& fault, const Settings& settings, int64_t
 /// What `foucault run` does with a log, and says.
 std::optional<std::string> process(const std::string& log, const std::string& method,
                                    const Settings& settings, laboratory::FaultObserver& observer) {
-  RawlogSource source(log, settings.imu.sample_kind(), settings.rawlog);
+  rawlog::RawlogSource source(log, settings.imu.sample_kind(), settings.rawlog);
   observer.place(source.mounting());
-  const std::unique_ptr<Estimator> estimator =
+  const std::unique_ptr<state::Estimator> estimator =
       find_method(method).make(settings, source.mounting(), observer);
-  LogChecker checker(settings.imu.noise(), source.mounting());
+  diagnosis::LogChecker checker(settings.imu.noise(), source.mounting());
   while (const std::optional<Measurement> measurement = source.next()) {
     checker.add(*measurement);
     if (const auto* reference = std::get_if<ReferencePose>(&*measurement)) {
@@ -38,8 +38,8 @@ std::optional<std::string> process(const std::string& log, const std::string& me
   }
   estimator->finish();
   observer.judge();
-  for (const Notice& notice : source.notices()) observer.notice(notice);
-  for (const Notice& notice : checker.warnings()) observer.notice(notice);
+  for (const state::Notice& notice : source.notices()) observer.notice(notice);
+  for (const state::Notice& notice : checker.warnings()) observer.notice(notice);
   return source.damage();
 }
 
@@ -66,14 +66,15 @@ laboratory::ReturnOutcome study_return(const laboratory::ReturnCase& what,
   program.outages = settings.outages;
   program.noise = settings.imu.noise();
   program.open = [&](const std::string& log) {
-    return std::make_unique<RawlogSource>(log, settings.imu.sample_kind(), settings.rawlog);
+    return std::make_unique<rawlog::RawlogSource>(log, settings.imu.sample_kind(), settings.rawlog);
   };
   program.method = [&](const laboratory::ReturnCase& of_case, bool gate) {
     Settings configured = settings;
     configured.imu = settings.imu.scaled(of_case.noise);
     if (!gate) configured.gnss.gate_false_alarm = 0;
     const Method& method = find_method(of_case.method);
-    const auto make = [make = method.make, configured](const Mounting& mounting, Sink& sink) {
+    const auto make = [make = method.make, configured](const state::Mounting& mounting,
+                                                       state::Sink& sink) {
       return make(configured, mounting, sink);
     };
     return laboratory::ReturnMethod{make, method.keep_references_s};

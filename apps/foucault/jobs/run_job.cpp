@@ -26,7 +26,7 @@ namespace {
 /// An estimator does not know where its measurements come from, and that they ended too early;
 /// whoever reads its errors should.
 template <class Work>
-void naming(const std::string& log, const RawlogSource& source, Work work) {
+void naming(const std::string& log, const rawlog::RawlogSource& source, Work work) {
   try {
     work();
   } catch (const exports::WriteError&) {
@@ -41,7 +41,7 @@ void naming(const std::string& log, const RawlogSource& source, Work work) {
 constexpr std::size_t kBatch = 64;
 
 /// Empty at the end of the log.
-void read_batch(RawlogSource& source, std::vector<Measurement>& batch) {
+void read_batch(rawlog::RawlogSource& source, std::vector<Measurement>& batch) {
   const StageTimer timer(Stage::read);
   batch.clear();
   while (batch.size() < kBatch) {
@@ -51,20 +51,22 @@ void read_batch(RawlogSource& source, std::vector<Measurement>& batch) {
   }
 }
 
-void check_batch(const std::vector<Measurement>& batch, LogChecker& checker) {
+void check_batch(const std::vector<Measurement>& batch, diagnosis::LogChecker& checker) {
   const StageTimer timer(Stage::statistics);
   for (const Measurement& measurement : batch) checker.add(measurement);
 }
 
-void process_batch(const std::vector<Measurement>& batch, Estimator& estimator, RunOutput& output) {
+void process_batch(const std::vector<Measurement>& batch, state::Estimator& estimator,
+                   RunOutput& output) {
   for (const Measurement& measurement : batch) {
     output.measurement(measurement);
     estimator.process(measurement);
   }
 }
 
-void process(const std::string& log, RawlogSource& source, Estimator& estimator, Stage per_sample,
-             RunOutput& output, LogChecker& checker, Console& console) {
+void process(const std::string& log, rawlog::RawlogSource& source, state::Estimator& estimator,
+             Stage per_sample, RunOutput& output, diagnosis::LogChecker& checker,
+             Console& console) {
   std::vector<Measurement> batch;
   batch.reserve(kBatch);
   for (read_batch(source, batch); !batch.empty(); read_batch(source, batch)) {
@@ -74,8 +76,8 @@ void process(const std::string& log, RawlogSource& source, Estimator& estimator,
     console.progress("processing", source.progress());
   }
   naming(log, source, [&] { estimator.finish(); });
-  for (const Notice& notice : source.notices()) output.notice(notice);
-  for (const Notice& notice : checker.warnings()) output.notice(notice);
+  for (const state::Notice& notice : source.notices()) output.notice(notice);
+  for (const state::Notice& notice : checker.warnings()) output.notice(notice);
   if (source.damage()) output.damage(*source.damage());
 }
 
@@ -104,13 +106,14 @@ RunResult run_into(const RunJob& job, const std::filesystem::path& folder, Conso
   const std::string config = dump_config(settings);
   const Method& method = find_method(job.method);
 
-  RawlogSource source(job.log, settings.imu.sample_kind(), settings.rawlog);
+  rawlog::RawlogSource source(job.log, settings.imu.sample_kind(), settings.rawlog);
   std::optional<content::RunReport> report;
   if (job.report) report.emplace(labels(job, config), source.mounting());
   RunOutput output(folder, source.mounting(), settings.output, method.keep_references_s,
                    report ? &*report : nullptr, console);
-  const std::unique_ptr<Estimator> estimator = method.make(settings, source.mounting(), output);
-  LogChecker checker(settings.imu.noise(), source.mounting());
+  const std::unique_ptr<state::Estimator> estimator =
+      method.make(settings, source.mounting(), output);
+  diagnosis::LogChecker checker(settings.imu.noise(), source.mounting());
   process(job.log, source, *estimator, method.per_sample, output, checker, console);
 
   RunResult result;
@@ -125,7 +128,8 @@ RunResult run_into(const RunJob& job, const std::filesystem::path& folder, Conso
     if (result.damage) throw DataError(*result.damage);
     throw DataError(fmt::format("'{}': no epoch came out of the data", job.log));
   }
-  result.calibration = calibrated_blocks(output.last_epoch(), settings.calibrate.layout());
+  result.calibration =
+      evaluation::calibrated_blocks(output.last_epoch(), settings.calibrate.layout());
   result.resources = meter.used();
   if (report) write_report(result, *report, folder, console);
   if (profile) result.profile = profile->times();

@@ -29,8 +29,8 @@ struct RunResult {
   std::string log;
   std::string out;
   bool report = true;
-  RunMetrics metrics;
-  std::vector<CalibratedBlock> calibration;
+  evaluation::RunMetrics metrics;
+  std::vector<evaluation::CalibratedBlock> calibration;
   double statistics_from_s = 0;
   Resources resources;             ///< of reading and estimating, without the report
   std::vector<StageTime> profile;  ///< of everything, if asked for

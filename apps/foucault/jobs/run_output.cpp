@@ -11,15 +11,15 @@
 namespace foucault::app {
 namespace {
 
-ReferenceComparisonOptions comparison_options(double keep_s) {
-  ReferenceComparisonOptions options;
+evaluation::ReferenceComparisonOptions comparison_options(double keep_s) {
+  evaluation::ReferenceComparisonOptions options;
   options.keep_s = keep_s;
   return options;
 }
 
 }  // namespace
 
-RunOutput::RunOutput(const std::filesystem::path& folder, const Mounting& mounting,
+RunOutput::RunOutput(const std::filesystem::path& folder, const state::Mounting& mounting,
                      const OutputOptions& options, double keep_references_s,
                      content::RunReport* report, Console& console)
     : mounting_(mounting),
@@ -27,7 +27,7 @@ RunOutput::RunOutput(const std::filesystem::path& folder, const Mounting& mounti
       solution_(folder, mounting),
       comparison_(
           mounting,
-          [this](const Epoch& epoch, const ReferenceError& error) {
+          [this](const state::Epoch& epoch, const state::ReferenceError& error) {
             reference_error(epoch, error);
           },
           comparison_options(keep_references_s)),
@@ -51,7 +51,7 @@ void RunOutput::start_metrics(int64_t first_fix_ns) {
                    });
 }
 
-void RunOutput::epoch(const Epoch& epoch) {
+void RunOutput::epoch(const state::Epoch& epoch) {
   last_epoch_ = epoch;
   write(epoch);
   collect(epoch);
@@ -60,33 +60,33 @@ void RunOutput::epoch(const Epoch& epoch) {
   comparison_.add(epoch);
 }
 
-void RunOutput::write(const Epoch& epoch) {
+void RunOutput::write(const state::Epoch& epoch) {
   const StageTimer timer(Stage::write);
   solution_.epoch(epoch);
 }
 
-void RunOutput::collect(const Epoch& epoch) {
+void RunOutput::collect(const state::Epoch& epoch) {
   if (report_ == nullptr) return;
   const StageTimer timer(Stage::draw);
   report_->epoch(epoch);
 }
 
-void RunOutput::fix(const FixResult& fix) {
+void RunOutput::fix(const state::FixResult& fix) {
   if (report_ != nullptr) report_->fix(fix);
   if (metrics_) metrics_->fix(fix);
 }
 
-void RunOutput::observation(const ObservationResult& result) {
+void RunOutput::observation(const state::ObservationResult& result) {
   if (metrics_) metrics_->observation(result);
 }
 
-void RunOutput::prediction(const PredictionResult& prediction) {
+void RunOutput::prediction(const state::PredictionResult& prediction) {
   if (metrics_) metrics_->prediction(prediction);
 }
 
-void RunOutput::notice(const Notice& notice) {
+void RunOutput::notice(const state::Notice& notice) {
   if (report_ != nullptr) report_->notice(notice);
-  if (notice.kind == NoticeKind::aligned) {
+  if (notice.kind == state::NoticeKind::aligned) {
     console_.say(fmt::format("start      {}, {}", utc_text(notice.t_ns), notice.text));
   } else {
     console_.warn(fmt::format("{}: {}", utc_text(notice.t_ns), notice.text));
@@ -94,19 +94,19 @@ void RunOutput::notice(const Notice& notice) {
 }
 
 void RunOutput::damage(const std::string& text) {
-  if (report_ != nullptr) report_->notice({last_epoch_.t_ns, NoticeKind::skipped, text});
+  if (report_ != nullptr) report_->notice({last_epoch_.t_ns, state::NoticeKind::skipped, text});
 }
 
-void RunOutput::reference_error(const Epoch& epoch, const ReferenceError& error) {
+void RunOutput::reference_error(const state::Epoch& epoch, const state::ReferenceError& error) {
   if (report_ != nullptr) report_->reference_error(epoch, error);
   if (metrics_) metrics_->reference_error(epoch, error);
 }
 
-RunMetrics RunOutput::finish() {
+evaluation::RunMetrics RunOutput::finish() {
   const StageTimer timer(Stage::write);
   solution_.finish();
   if (!metrics_) return {};
-  const RunMetrics metrics = metrics_->metrics();
+  const evaluation::RunMetrics metrics = metrics_->metrics();
   if (report_ != nullptr) report_->consistency(metrics.consistency);
   return metrics;
 }

@@ -14,42 +14,42 @@
 namespace foucault::app {
 
 /// Where everything that comes out of a run goes: solution files, metrics, report, console.
-class RunOutput : public Sink {
+class RunOutput : public state::Sink {
  public:
   /// `keep_references_s`: how far epochs may lag behind references. `report` may be null; it and
   /// the console must outlive this.
-  RunOutput(const std::filesystem::path& folder, const Mounting& mounting,
+  RunOutput(const std::filesystem::path& folder, const state::Mounting& mounting,
             const OutputOptions& options, double keep_references_s, content::RunReport* report,
             Console& console);
 
   /// Every measurement, before the estimator gets it: references and stamps are taken from it.
   void measurement(const Measurement& measurement);
 
-  void epoch(const Epoch& epoch) override;
-  void fix(const FixResult& fix) override;
-  void observation(const ObservationResult& result) override;
-  void notice(const Notice& notice) override;
+  void epoch(const state::Epoch& epoch) override;
+  void fix(const state::FixResult& fix) override;
+  void observation(const state::ObservationResult& result) override;
+  void notice(const state::Notice& notice) override;
   bool wants_predictions() const override { return true; }
-  void prediction(const PredictionResult& prediction) override;
+  void prediction(const state::PredictionResult& prediction) override;
   /// Why the log broke off, for the report; the command says it at its end.
   void damage(const std::string& text);
 
   /// Completes the files, and what the report needs.
-  RunMetrics finish();
-  const Epoch& last_epoch() const { return last_epoch_; }
+  evaluation::RunMetrics finish();
+  const state::Epoch& last_epoch() const { return last_epoch_; }
 
  private:
   void start_metrics(int64_t first_fix_ns);
-  void write(const Epoch& epoch);
-  void collect(const Epoch& epoch);
-  void reference_error(const Epoch& epoch, const ReferenceError& error);
+  void write(const state::Epoch& epoch);
+  void collect(const state::Epoch& epoch);
+  void reference_error(const state::Epoch& epoch, const state::ReferenceError& error);
 
-  Mounting mounting_;
+  state::Mounting mounting_;
   double statistics_from_s_;
   exports::SolutionWriter solution_;
-  ReferenceComparison comparison_;
-  std::optional<RunMetricsCollector> metrics_;  ///< from the first fix on
-  Epoch last_epoch_;
+  evaluation::ReferenceComparison comparison_;
+  std::optional<evaluation::RunMetricsCollector> metrics_;  ///< from the first fix on
+  state::Epoch last_epoch_;
   content::RunReport* report_;
   Console& console_;
 };

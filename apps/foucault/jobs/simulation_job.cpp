@@ -20,12 +20,13 @@ void count(const Measurement& measurement, SimulationCounts& counts) {
   if (std::holds_alternative<ReferencePose>(measurement)) ++counts.reference_poses;
 }
 
-std::unique_ptr<Source> make_source(const SimulationSettings& settings, const FaultCase& fault) {
-  ScenarioOptions scenario = settings.scenario;
+std::unique_ptr<state::Source> make_source(const SimulationSettings& settings,
+                                           const FaultCase& fault) {
+  simulation::ScenarioOptions scenario = settings.scenario;
   if (fault.sigma_m) scenario.gnss_sigma_m = {*fault.sigma_m, *fault.sigma_m, 2 * *fault.sigma_m};
-  auto source = std::make_unique<SimulatedSource>(scenario, settings.imu.noise());
+  auto source = std::make_unique<simulation::SimulatedSource>(scenario, settings.imu.noise());
   if (fault.faults.empty()) return source;
-  return std::make_unique<FaultySource>(std::move(source), fault.faults, scenario.seed);
+  return std::make_unique<simulation::FaultySource>(std::move(source), fault.faults, scenario.seed);
 }
 
 }  // namespace
@@ -42,12 +43,13 @@ SimulationCounts write_simulation(const SimulationSettings& settings, const std:
 
 SimulationCounts write_simulation(const SimulationSettings& settings, const FaultCase& fault,
                                   const std::string& path, Console& console) {
-  if (settings.imu.sample_kind() != SampleKind::interval_mean) {
+  if (settings.imu.sample_kind() != imu::SampleKind::interval_mean) {
     throw UsageError("imu.samples: simulated samples are means over intervals; use interval_mean");
   }
-  const std::unique_ptr<Source> source = make_source(settings, fault);
-  RawlogWriter writer(path, source->mounting(),
-                      fault.faults.empty() ? WrittenValues::finite : WrittenValues::any);
+  const std::unique_ptr<state::Source> source = make_source(settings, fault);
+  rawlog::RawlogWriter writer(
+      path, source->mounting(),
+      fault.faults.empty() ? rawlog::WrittenValues::finite : rawlog::WrittenValues::any);
   SimulationCounts counts;
   while (const std::optional<Measurement> measurement = source->next()) {
     writer.write(*measurement);
@@ -55,7 +57,7 @@ SimulationCounts write_simulation(const SimulationSettings& settings, const Faul
     console.progress("simulating", source->progress());
   }
   writer.finish();
-  damage_file(path, fault.damage);
+  laboratory::damage_file(path, fault.damage);
   return counts;
 }
 

@@ -12,8 +12,8 @@ namespace foucault::app {
 /// Configuration of `simulate`: the IMU's noise and the scenario.
 class SimulationSettings : public Configurable {
  public:
-  ImuOptions imu;
-  ScenarioOptions scenario;
+  imu::ImuOptions imu;
+  simulation::ScenarioOptions scenario;
 
   void fields(ConfigFields& f) override;
 };

@@ -25,15 +25,15 @@ constexpr double kLongestLine = 5;  ///< over longer holes between points no lin
 constexpr std::size_t kMostRecordings = 6;
 
 /// The runs of all methods over one recording with one shift.
-using ComparedRuns = std::vector<const ExperimentResult*>;
+using ComparedRuns = std::vector<const evaluation::ExperimentResult*>;
 
-content::Bounded bounded(const Estimate& e) { return {e.value, e.low, e.high}; }
+content::Bounded bounded(const evaluation::Estimate& e) { return {e.value, e.low, e.high}; }
 
-content::OutageCurve curve(const MethodOutages::Entry& entry) {
+content::OutageCurve curve(const evaluation::MethodOutages::Entry& entry) {
   content::OutageCurve curve;
   curve.label = fmt::format("{}, shift {} s, outage {}", entry.run->recording, entry.run->shift_s,
                             entry.drift->outage.index + 1);
-  for (const DriftSample& sample : entry.drift->samples) {
+  for (const evaluation::DriftSample& sample : entry.drift->samples) {
     curve.since_begin_s.push_back(sample.since_begin_s);
     curve.horizontal_m.push_back(sample.horizontal());
     curve.vertical_m.push_back(sample.vertical());
@@ -43,16 +43,17 @@ content::OutageCurve curve(const MethodOutages::Entry& entry) {
   return curve;
 }
 
-content::MethodCurves method_curves(const MethodOutages& outages) {
+content::MethodCurves method_curves(const evaluation::MethodOutages& outages) {
   content::MethodCurves curves{outages.method, {}};
-  for (const MethodOutages::Entry& entry : outages.entries) curves.outages.push_back(curve(entry));
+  for (const evaluation::MethodOutages::Entry& entry : outages.entries)
+    curves.outages.push_back(curve(entry));
   return curves;
 }
 
 /// A case a group, in order of appearance.
-std::vector<DriftCase> drift_cases(const std::vector<MethodOutages>& outages) {
+std::vector<DriftCase> drift_cases(const std::vector<evaluation::MethodOutages>& outages) {
   std::vector<DriftCase> cases;
-  for (const MethodOutages& o : outages) {
+  for (const evaluation::MethodOutages& o : outages) {
     if (o.entries.empty()) continue;
     if (cases.empty() || cases.back().name != o.group) cases.push_back({o.group, {}});
     cases.back().methods.push_back(method_curves(o));
@@ -60,26 +61,26 @@ std::vector<DriftCase> drift_cases(const std::vector<MethodOutages>& outages) {
   return cases;
 }
 
-std::vector<DriftRms> drift_rms(const std::vector<MethodOutages>& rows) {
+std::vector<DriftRms> drift_rms(const std::vector<evaluation::MethodOutages>& rows) {
   std::vector<DriftRms> rms;
-  for (const MethodOutages& row : rows) {
+  for (const evaluation::MethodOutages& row : rows) {
     if (row.entries.empty()) continue;
-    rms.push_back({row.group, row.method, bounded(summarize(row.horizontal_max()).rms),
-                   bounded(summarize(row.vertical_max()).rms)});
+    rms.push_back({row.group, row.method, bounded(evaluation::summarize(row.horizontal_max()).rms),
+                   bounded(evaluation::summarize(row.vertical_max()).rms)});
   }
   return rms;
 }
 
 /// The first shift of each recording (of each IMU's first recording, if there are several IMUs).
-std::vector<ComparedRuns> shown_runs(const EvaluationSummary& summary) {
+std::vector<ComparedRuns> shown_runs(const evaluation::EvaluationSummary& summary) {
   const bool by_imu = summary.row_header() == "IMU";
   std::vector<ComparedRuns> shown;
-  const auto of_same = [&](const ExperimentResult& r) {
+  const auto of_same = [&](const evaluation::ExperimentResult& r) {
     return std::find_if(shown.begin(), shown.end(), [&](const ComparedRuns& runs) {
       return runs[0]->imu == r.imu && (by_imu || runs[0]->recording == r.recording);
     });
   };
-  for (const ExperimentResult& r : summary.results()) {
+  for (const evaluation::ExperimentResult& r : summary.results()) {
     const auto found = of_same(r);
     if (found == shown.end()) {
       if (shown.size() < kMostRecordings) shown.push_back({&r});
@@ -90,7 +91,7 @@ std::vector<ComparedRuns> shown_runs(const EvaluationSummary& summary) {
   return shown;
 }
 
-std::string name_of(const ComparedRuns& runs, const EvaluationSummary& summary) {
+std::string name_of(const ComparedRuns& runs, const evaluation::EvaluationSummary& summary) {
   return summary.row_header() == "IMU"
              ? fmt::format("{}, {}", runs.front()->imu, runs.front()->recording)
              : runs.front()->recording;
@@ -98,14 +99,15 @@ std::string name_of(const ComparedRuns& runs, const EvaluationSummary& summary) 
 
 /// Points with a mark where no line is to be drawn.
 template <class Point>
-void walk(const std::vector<TrackPoint>& points, Point point, const std::function<void()>& gap) {
+void walk(const std::vector<evaluation::TrackPoint>& points, Point point,
+          const std::function<void()>& gap) {
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (i > 0 && seconds_between(points[i - 1].t_ns, points[i].t_ns) > kLongestLine) gap();
     point(points[i]);
   }
 }
 
-ErrorTimeline::Curve timeline_curve(const ExperimentResult& run) {
+ErrorTimeline::Curve timeline_curve(const evaluation::ExperimentResult& run) {
   ErrorTimeline::Curve curve{run.method, {}, {}};
   const auto put = [&](double t_s, double horizontal_m) {
     curve.t_s.push_back(t_s);
@@ -113,7 +115,7 @@ ErrorTimeline::Curve timeline_curve(const ExperimentResult& run) {
   };
   walk(
       run.track,
-      [&](const TrackPoint& p) {
+      [&](const evaluation::TrackPoint& p) {
         put(seconds_between(run.run.first_fix_ns, p.t_ns), p.horizontal());
       },
       [&] { put(curve.t_s.back() + 0.5 * kLongestLine, kNaN); });
@@ -122,13 +124,14 @@ ErrorTimeline::Curve timeline_curve(const ExperimentResult& run) {
 
 ErrorTimeline timeline(const ComparedRuns& runs, const std::string& name) {
   ErrorTimeline timeline{name, {}, {}};
-  const OutageRunResult& first = runs.front()->run;
-  for (const Outage& outage : first.withheld) {
+  const evaluation::OutageRunResult& first = runs.front()->run;
+  for (const evaluation::Outage& outage : first.withheld) {
     timeline.outages.push_back(
         {seconds_between(first.first_fix_ns, outage.begin_ns),
          seconds_between(first.first_fix_ns, std::min(outage.end_ns, first.last_fix_ns))});
   }
-  for (const ExperimentResult* run : runs) timeline.curves.push_back(timeline_curve(*run));
+  for (const evaluation::ExperimentResult* run : runs)
+    timeline.curves.push_back(timeline_curve(*run));
   return timeline;
 }
 
@@ -140,11 +143,13 @@ void add(GroundPath& path, const Eigen::Vector3d& p_w) {
 void add_gap(GroundPath& path) { add(path, Eigen::Vector3d::Constant(kNaN)); }
 
 /// The points inside an outage.
-std::vector<TrackPoint> during(const ExperimentResult& run, const Outage& outage) {
-  std::vector<TrackPoint> points;
+std::vector<evaluation::TrackPoint> during(const evaluation::ExperimentResult& run,
+                                           const evaluation::Outage& outage) {
+  std::vector<evaluation::TrackPoint> points;
   std::copy_if(run.track.begin(), run.track.end(), std::back_inserter(points),
-               [&](const TrackPoint& p) {
-                 return p.t_ns > outage.begin_ns && p.t_ns <= outage.end_ns + kStampToleranceNs;
+               [&](const evaluation::TrackPoint& p) {
+                 return p.t_ns > outage.begin_ns &&
+                        p.t_ns <= outage.end_ns + evaluation::kStampToleranceNs;
                });
   return points;
 }
@@ -152,23 +157,24 @@ std::vector<TrackPoint> during(const ExperimentResult& run, const Outage& outage
 OutageMap outage_map(const ComparedRuns& runs, const std::string& name) {
   OutageMap map;
   map.name = name;
-  const ExperimentResult& first = *runs.front();
+  const evaluation::ExperimentResult& first = *runs.front();
   if (first.track.empty()) return map;
-  const LocalFrame frame(first.track.front().position);
-  const auto truth = [&](const TrackPoint& p) -> Eigen::Vector3d {
+  const geodesy::LocalFrame frame(first.track.front().position);
+  const auto truth = [&](const evaluation::TrackPoint& p) -> Eigen::Vector3d {
     return frame.to_local(p.position) - frame.R_w_n(p.position) * p.error_n;
   };
   walk(
-      first.track, [&](const TrackPoint& p) { add(map.truth, truth(p)); },
+      first.track, [&](const evaluation::TrackPoint& p) { add(map.truth, truth(p)); },
       [&] { add_gap(map.truth); });
-  for (const Outage& outage : first.run.withheld) {
-    for (const TrackPoint& p : during(first, outage)) add(map.truth_in_outages, truth(p));
+  for (const evaluation::Outage& outage : first.run.withheld) {
+    for (const evaluation::TrackPoint& p : during(first, outage))
+      add(map.truth_in_outages, truth(p));
     add_gap(map.truth_in_outages);
   }
-  for (const ExperimentResult* run : runs) {
+  for (const evaluation::ExperimentResult* run : runs) {
     OutageMap::Estimate estimate{run->method, {}};
-    for (const Outage& outage : run->run.withheld) {
-      for (const TrackPoint& p : during(*run, outage)) {
+    for (const evaluation::Outage& outage : run->run.withheld) {
+      for (const evaluation::TrackPoint& p : during(*run, outage)) {
         add(estimate.path, frame.to_local(p.position));
       }
       add_gap(estimate.path);
@@ -178,17 +184,17 @@ OutageMap outage_map(const ComparedRuns& runs, const std::string& name) {
   return map;
 }
 
-content::DistanceDrift::Method distance_method(const MethodOutages& outages,
-                                               const DistanceProfile& profile) {
+content::DistanceDrift::Method distance_method(const evaluation::MethodOutages& outages,
+                                               const evaluation::DistanceProfile& profile) {
   content::DistanceDrift::Method method;
   method.method = outages.method;
-  for (const MethodOutages::Entry& entry : outages.entries) {
+  for (const evaluation::MethodOutages::Entry& entry : outages.entries) {
     method.distance_km.push_back(entry.drift->distance_m * 1e-3);
   }
   method.horizontal_m = outages.horizontal_max();
   method.vertical_m = outages.vertical_max();
-  for (const ProfileBin& bin : profile.bins) {
-    for (const BinDrift& drift : bin.methods) {
+  for (const evaluation::ProfileBin& bin : profile.bins) {
+    for (const evaluation::BinDrift& drift : bin.methods) {
       if (drift.method != outages.method) continue;
       method.bins.push_back({bin.mean_km, bounded(drift.horizontal_m), bounded(drift.vertical_m)});
     }
@@ -196,11 +202,11 @@ content::DistanceDrift::Method distance_method(const MethodOutages& outages,
   return method;
 }
 
-std::vector<content::DistanceDrift> distance_drifts(const EvaluationSummary& summary) {
+std::vector<content::DistanceDrift> distance_drifts(const evaluation::EvaluationSummary& summary) {
   std::vector<content::DistanceDrift> drifts;
-  for (const DistanceProfile& profile : summary.distances()) {
+  for (const evaluation::DistanceProfile& profile : summary.distances()) {
     content::DistanceDrift drift{profile.group, {}};
-    for (const MethodOutages& o : summary.distance_groups()) {
+    for (const evaluation::MethodOutages& o : summary.distance_groups()) {
       if (o.group == profile.group) drift.methods.push_back(distance_method(o, profile));
     }
     drifts.push_back(std::move(drift));
@@ -208,33 +214,35 @@ std::vector<content::DistanceDrift> distance_drifts(const EvaluationSummary& sum
   return drifts;
 }
 
-std::vector<page::Table> distance_tables(const EvaluationSummary& summary) {
+std::vector<page::Table> distance_tables(const evaluation::EvaluationSummary& summary) {
   if (summary.distances().empty()) return {};
   std::vector<page::Table> tables{
-      report_table(distance_table(summary.distances(), summary.row_header()),
+      report_table(evaluation::distance_table(summary.distances(), summary.row_header()),
                    "RMS over the outages of a bin of the largest drift in each, with the 95 % "
                    "bootstrap interval.")};
   if (summary.methods().size() > 1) {
     tables.push_back(report_table(
-        distance_difference_table(summary.distances(), summary.row_header()),
+        evaluation::distance_difference_table(summary.distances(), summary.row_header()),
         "The interval is a 95 % bootstrap over the outages of the bin, drawn in pairs."));
   }
   return tables;
 }
 
-content::Bounded bounded(const PooledSquares& squares) {
+content::Bounded bounded(const evaluation::PooledSquares& squares) {
   if (squares.outages == 0) return {kNaN, kNaN, kNaN};
   return {squares.mean, squares.band.low, squares.band.high};
 }
 
-content::NormalizedErrors::Method normalized_method(const MethodNormalizedDrifts& drifts,
-                                                    const std::vector<std::string>& times) {
+content::NormalizedErrors::Method normalized_method(
+    const evaluation::MethodNormalizedDrifts& drifts, const std::vector<std::string>& times) {
   content::NormalizedErrors::Method method{drifts.method, {}, {}};
   for (const std::string& time : times) {
-    const auto found =
-        std::find_if(drifts.times.begin(), drifts.times.end(),
-                     [&](const NormalizedDrift& drift) { return time_text(drift) == time; });
-    const NormalizedDrift drift = found == drifts.times.end() ? NormalizedDrift{} : *found;
+    const auto found = std::find_if(drifts.times.begin(), drifts.times.end(),
+                                    [&](const evaluation::NormalizedDrift& drift) {
+                                      return evaluation::time_text(drift) == time;
+                                    });
+    const evaluation::NormalizedDrift drift =
+        found == drifts.times.end() ? evaluation::NormalizedDrift{} : *found;
     method.horizontal.push_back(bounded(drift.horizontal));
     method.vertical.push_back(bounded(drift.vertical));
   }
@@ -242,10 +250,11 @@ content::NormalizedErrors::Method normalized_method(const MethodNormalizedDrifts
 }
 
 /// An entry an IMU, else one for the last group: all recordings together, or the only one.
-std::vector<content::NormalizedErrors> normalized_errors(const EvaluationSummary& summary) {
-  const std::vector<std::string> times = times_of(summary.normalized());
+std::vector<content::NormalizedErrors> normalized_errors(
+    const evaluation::EvaluationSummary& summary) {
+  const std::vector<std::string> times = evaluation::times_of(summary.normalized());
   std::vector<content::NormalizedErrors> all;
-  for (const MethodNormalizedDrifts& drifts : summary.normalized()) {
+  for (const evaluation::MethodNormalizedDrifts& drifts : summary.normalized()) {
     if (summary.row_header() != "IMU" && drifts.group != summary.rows().back().group) continue;
     if (all.empty() || all.back().name != drifts.group) all.push_back({drifts.group, times, {}});
     all.back().methods.push_back(normalized_method(drifts, times));
@@ -253,7 +262,7 @@ std::vector<content::NormalizedErrors> normalized_errors(const EvaluationSummary
   return all;
 }
 
-std::vector<page::Table> consistency_tables(const EvaluationSummary& summary) {
+std::vector<page::Table> consistency_tables(const evaluation::EvaluationSummary& summary) {
   std::vector<page::Table> tables;
   if (!summary.normalized().empty()) {
     tables.push_back(report_table(
@@ -274,18 +283,19 @@ std::vector<page::Table> consistency_tables(const EvaluationSummary& summary) {
   return tables;
 }
 
-std::vector<page::KeyNumber> key_numbers(const EvaluationSummary& summary) {
+std::vector<page::KeyNumber> key_numbers(const evaluation::EvaluationSummary& summary) {
   std::vector<page::KeyNumber> numbers;
-  for (const MethodOutages& o : summary.overall()) {
-    numbers.push_back({fmt::format("{}, horizontal RMS", o.method),
-                       fmt::format("{:.2f}", root_mean_square(o.horizontal_max())), "m",
-                       fmt::format("vertical {:.2f} m, {} outages",
-                                   root_mean_square(o.vertical_max()), o.entries.size())});
+  for (const evaluation::MethodOutages& o : summary.overall()) {
+    numbers.push_back(
+        {fmt::format("{}, horizontal RMS", o.method),
+         fmt::format("{:.2f}", evaluation::root_mean_square(o.horizontal_max())), "m",
+         fmt::format("vertical {:.2f} m, {} outages",
+                     evaluation::root_mean_square(o.vertical_max()), o.entries.size())});
   }
   return numbers;
 }
 
-std::vector<page::Table> report_tables(const EvaluationSummary& summary) {
+std::vector<page::Table> report_tables(const evaluation::EvaluationSummary& summary) {
   std::vector<page::Table> tables{report_table(
       summary.rms_table(), "RMS over the outages of the largest drift in each, as in Table III.")};
   if (summary.methods().size() > 1) {
@@ -299,10 +309,10 @@ std::vector<page::Table> report_tables(const EvaluationSummary& summary) {
 }
 
 /// Cases of the figures: IMUs, or all recordings together.
-std::vector<DriftCase> shown_cases(const EvaluationSummary& summary) {
+std::vector<DriftCase> shown_cases(const evaluation::EvaluationSummary& summary) {
   if (summary.row_header() == "IMU") return drift_cases(summary.rows());
   std::vector<DriftCase> cases = drift_cases(summary.overall());
-  const std::vector<ExperimentResult>& results = summary.results();
+  const std::vector<evaluation::ExperimentResult>& results = summary.results();
   const bool only_one = std::all_of(results.begin(), results.end(), [&](const auto& result) {
     return result.recording == results.front().recording;
   });
@@ -312,15 +322,15 @@ std::vector<DriftCase> shown_cases(const EvaluationSummary& summary) {
 
 }  // namespace
 
-page::Table report_table(const TextTable& table, const std::string& note) {
+page::Table report_table(const evaluation::TextTable& table, const std::string& note) {
   return {table.title, note, false, table.header, table.rows};
 }
 
-content::EvaluationReport evaluation_report(const EvaluationSummary& summary,
+content::EvaluationReport evaluation_report(const evaluation::EvaluationSummary& summary,
                                             const EvaluationLabels& labels) {
   content::EvaluationReport report;
   report.title = labels.title;
-  report.subtitle = "Outages: " + outages_text(summary);
+  report.subtitle = "Outages: " + evaluation::outages_text(summary);
   report.methods = summary.methods();
   report.remarks = labels.remarks;
   report.key_numbers = key_numbers(summary);

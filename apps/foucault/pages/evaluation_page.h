@@ -16,9 +16,9 @@ struct EvaluationLabels {
 };
 
 /// The report of an evaluation as plain data.
-content::EvaluationReport evaluation_report(const EvaluationSummary& summary,
+content::EvaluationReport evaluation_report(const evaluation::EvaluationSummary& summary,
                                             const EvaluationLabels& labels);
 
-page::Table report_table(const TextTable& table, const std::string& note = "");
+page::Table report_table(const evaluation::TextTable& table, const std::string& note = "");
 
 }  // namespace foucault::app

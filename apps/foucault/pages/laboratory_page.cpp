@@ -28,38 +28,40 @@ LabCurve curve(const std::string& key, const std::string& title) {
   return result;
 }
 
-void add_point(double x, const MotionError& error, LabCurve& curve) {
+void add_point(double x, const laboratory::MotionError& error, LabCurve& curve) {
   curve.x.push_back(x);
   curve.position_m.push_back(error.position);
   curve.velocity_m_s.push_back(error.velocity);
   curve.attitude_rad.push_back(error.attitude);
 }
 
-LabCurve over_durations(const MotionStudy& motion, const StudyPlan& plan, LabGroup group,
-                        const std::string& key, const std::string& title) {
+LabCurve over_durations(const laboratory::MotionStudy& motion, const laboratory::StudyPlan& plan,
+                        laboratory::LabGroup group, const std::string& key,
+                        const std::string& title) {
   LabCurve result = curve(key, title);
   for (const double T : plan.durations_s) {
-    add_point(T, find_row(motion, group, key, plan.rate_hz, T).rms, result);
+    add_point(T, laboratory::find_row(motion, group, key, plan.rate_hz, T).rms, result);
   }
   return result;
 }
 
-LabCurve over_rates(const MotionStudy& motion, const StudyPlan& plan, LabGroup group,
-                    const std::string& key, const std::string& title) {
+LabCurve over_rates(const laboratory::MotionStudy& motion, const laboratory::StudyPlan& plan,
+                    laboratory::LabGroup group, const std::string& key, const std::string& title) {
   LabCurve result = curve(key, title);
   for (const auto* rates : {&plan.rates_hz, &plan.fine_rates_hz}) {
     for (const double rate : *rates) {
-      add_point(rate, find_row(motion, group, key, rate, plan.fine_duration_s).rms, result);
+      add_point(rate, laboratory::find_row(motion, group, key, rate, plan.fine_duration_s).rms,
+                result);
     }
   }
   return result;
 }
 
 /// Without the origin at the vehicle itself, which a logarithmic axis does not hold.
-LabCurve over_distances(const MotionStudy& motion, double duration_s) {
+LabCurve over_distances(const laboratory::MotionStudy& motion, double duration_s) {
   LabCurve result = curve("refined", fmt::format("{:g} s", duration_s));
-  for (const LabRow& row : motion.rows) {
-    if (row.group != LabGroup::distance || row.duration_s != duration_s) continue;
+  for (const laboratory::LabRow& row : motion.rows) {
+    if (row.group != laboratory::LabGroup::distance || row.duration_s != duration_s) continue;
     if (row.origin_distance_m > 0) add_point(row.origin_distance_m / 1000, row.rms, result);
   }
   return result;
@@ -70,7 +72,7 @@ std::string range_text(const std::string& low, const std::string& high) {
   return low == high ? low : low + "–" + high;
 }
 
-std::string place_text(const MotionStudy& motion) {
+std::string place_text(const laboratory::MotionStudy& motion) {
   const auto whole = [](double value) { return fmt::format("{:.0f}", value); };
   const auto kilometres = [&](double metres) {
     return metres < 1e4 ? fmt::format("{:.2g}", metres / 1000) : whole(metres / 1000);
@@ -80,29 +82,33 @@ std::string place_text(const MotionStudy& motion) {
                      range_text(kilometres(motion.nearest_m), kilometres(motion.farthest_m)));
 }
 
-LabMotionCurves motion_curves(const MotionStudy& motion, const StudyPlan& plan) {
+LabMotionCurves motion_curves(const laboratory::MotionStudy& motion,
+                              const laboratory::StudyPlan& plan) {
   LabMotionCurves curves;
   curves.title = motion.title;
   curves.note = place_text(motion);
-  for (const LabName& model : lab_models()) {
-    curves.models.push_back(over_durations(motion, plan, LabGroup::model, model.key, model.title));
+  for (const laboratory::LabName& model : laboratory::lab_models()) {
+    curves.models.push_back(
+        over_durations(motion, plan, laboratory::LabGroup::model, model.key, model.title));
   }
-  for (const LabName& term : lab_ablations()) {
+  for (const laboratory::LabName& term : laboratory::lab_ablations()) {
     curves.ablations.push_back(
-        over_durations(motion, plan, LabGroup::ablation, term.key, term.title));
+        over_durations(motion, plan, laboratory::LabGroup::ablation, term.key, term.title));
   }
   for (const std::string& grade : plan.grades) {
     (is_high_grade(grade) ? curves.small_noise : curves.band_noise)
-        .push_back(over_durations(motion, plan, LabGroup::noise, grade, grade));
+        .push_back(over_durations(motion, plan, laboratory::LabGroup::noise, grade, grade));
   }
-  curves.rates.push_back(over_rates(motion, plan, LabGroup::model, "full", motion.title));
+  curves.rates.push_back(
+      over_rates(motion, plan, laboratory::LabGroup::model, "full", motion.title));
   if (motion.name == "vibration") {
-    curves.rates.push_back(
-        over_rates(motion, plan, LabGroup::ablation, "coning", motion.title + ", no coning term"));
-    curves.rates.push_back(over_rates(motion, plan, LabGroup::ablation, "sculling",
+    curves.rates.push_back(over_rates(motion, plan, laboratory::LabGroup::ablation, "coning",
+                                      motion.title + ", no coning term"));
+    curves.rates.push_back(over_rates(motion, plan, laboratory::LabGroup::ablation, "sculling",
                                       motion.title + ", no sculling term"));
   }
-  for (const double T : shown_durations_s()) curves.distances.push_back(over_distances(motion, T));
+  for (const double T : laboratory::shown_durations_s())
+    curves.distances.push_back(over_distances(motion, T));
   return curves;
 }
 
@@ -112,13 +118,14 @@ std::string with_prefix(double metres) {
   return fmt::format("{:.3g} µm", metres * 1e6);
 }
 
-std::vector<page::KeyNumber> key_numbers(const StudyResult& result) {
+std::vector<page::KeyNumber> key_numbers(const laboratory::StudyResult& result) {
   constexpr double kSecond = 1;
   std::vector<page::KeyNumber> numbers;
-  for (const MotionStudy& motion : result.motions) {
+  for (const laboratory::MotionStudy& motion : result.motions) {
     const auto position = [&](const char* model) {
       const double rate = result.plan.rate_hz;
-      return find_row(motion, LabGroup::model, model, rate, kSecond).rms.position;
+      return laboratory::find_row(motion, laboratory::LabGroup::model, model, rate, kSecond)
+          .rms.position;
     };
     numbers.push_back(
         {motion.title + ", full after 1 s", fmt::format("{:.2g}", position("full") * 1e6), "µm",
@@ -128,7 +135,7 @@ std::vector<page::KeyNumber> key_numbers(const StudyResult& result) {
   return numbers;
 }
 
-std::vector<std::string> remarks(const StudyResult& result) {
+std::vector<std::string> remarks(const laboratory::StudyResult& result) {
   return {
       fmt::format(
           "Exact motion is integrated from exact increments: no noise, no bias, the true state at "
@@ -148,7 +155,7 @@ std::vector<std::string> remarks(const StudyResult& result) {
 
 }  // namespace
 
-content::LaboratoryReport laboratory_report(const StudyResult& result) {
+content::LaboratoryReport laboratory_report(const laboratory::StudyResult& result) {
   content::LaboratoryReport report;
   report.subtitle = fmt::format("exact motion, {:g} to {:g} s, {:g} to {:g} Hz",
                                 result.plan.durations_s.front(), result.plan.durations_s.back(),
@@ -156,20 +163,20 @@ content::LaboratoryReport laboratory_report(const StudyResult& result) {
   report.remarks = remarks(result);
   report.key_numbers = key_numbers(result);
   report.tables = {
-      report_table(model_table(result), "Root mean square over the intervals."),
-      report_table(discretization_table(result),
+      report_table(laboratory::model_table(result), "Root mean square over the intervals."),
+      report_table(laboratory::discretization_table(result),
                    "Position, velocity and attitude. Velocities below 3e-8 m/s and positions below "
                    "7e-9 m are the turning of gravity's gradient with the Earth, which full leaves "
                    "out.")};
-  for (const MotionStudy& motion : result.motions) {
+  for (const laboratory::MotionStudy& motion : result.motions) {
     report.term_tables.push_back(report_table(
-        term_table(result, motion),
+        laboratory::term_table(result, motion),
         "Position error against 1 sigma by white noise and wandering biases: above 1 what "
         "is left out costs more than the sensor's noise. In brackets: the models."));
     report.motions.push_back(motion_curves(motion, result.plan));
   }
-  report.settings = {result.plan.rate_hz, result.plan.fine_duration_s, shown_durations_s(),
-                     "noise of four MEMS IMUs"};
+  report.settings = {result.plan.rate_hz, result.plan.fine_duration_s,
+                     laboratory::shown_durations_s(), "noise of four MEMS IMUs"};
   report.listings.push_back({"Command", result.command_line});
   report.footer = fmt::format("foucault {}", result.version);
   return report;

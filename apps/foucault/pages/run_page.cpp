@@ -17,7 +17,7 @@ std::string degrees_or_dash(const std::optional<double>& angle) {
   return angle ? fmt::format("{:.4f} deg", *angle * units::kDegrees) : "-";
 }
 
-page::Table gnss_table(const GnssMetrics& gnss) {
+page::Table gnss_table(const evaluation::GnssMetrics& gnss) {
   page::Table table;
   table.title = "GNSS";
   table.note =
@@ -34,7 +34,7 @@ page::Table gnss_table(const GnssMetrics& gnss) {
   return table;
 }
 
-page::Table reference_table(const ReferenceMetrics& r) {
+page::Table reference_table(const evaluation::ReferenceMetrics& r) {
   page::Table table;
   table.title = "Errors against the reference";
   table.note = fmt::format(
@@ -54,7 +54,7 @@ page::Table reference_table(const ReferenceMetrics& r) {
   return table;
 }
 
-page::Table aids_table(const Aids& aids) {
+page::Table aids_table(const evaluation::Aids& aids) {
   page::Table table;
   table.title = "Other measurements";
   table.note =
@@ -67,12 +67,12 @@ page::Table aids_table(const Aids& aids) {
   return table;
 }
 
-page::Table calibration_table(const std::vector<CalibratedBlock>& blocks) {
+page::Table calibration_table(const std::vector<evaluation::CalibratedBlock>& blocks) {
   page::Table table;
   table.title = "Calibration";
   table.note = "At the last epoch, with 1 sigma.";
   table.header = {"", "unit", "value", "sigma"};
-  for (const CalibratedBlock& b : blocks) {
+  for (const evaluation::CalibratedBlock& b : blocks) {
     table.rows.push_back({std::string(b.block.name), std::string(b.block.unit),
                           fmt::format("{:.4g}", fmt::join(b.value, ", ")),
                           fmt::format("{:.2g}", fmt::join(b.sigma, ", "))});
@@ -91,7 +91,7 @@ page::Banner verdict_banner(const RunResult& result) {
 }
 
 std::vector<page::KeyNumber> key_numbers(const RunResult& result) {
-  const RunMetrics& m = result.metrics;
+  const evaluation::RunMetrics& m = result.metrics;
   std::vector<page::KeyNumber> numbers;
   if (m.reference) {
     numbers.push_back({"Horizontal error, RMS", fmt::format("{:.3f}", m.reference->horizontal_rmse),

@@ -43,7 +43,7 @@ class EvaluationTest : public testing::Test {
     return settings;
   }
 
-  static std::vector<ExperimentResult> results(int threads) {
+  static std::vector<evaluation::ExperimentResult> results(int threads) {
     Console console(true);
     return evaluate(cross({log()}, {"ekf", "rough"}, settings()), threads, console);
   }
@@ -54,16 +54,18 @@ class EvaluationTest : public testing::Test {
 test::TestFolder* EvaluationTest::folder_ = nullptr;
 
 TEST_F(EvaluationTest, SameNumbersWithOneThreadAndTwo) {
-  const std::vector<double>& marks_s = default_drift_marks_s();
-  const std::string one = to_csv(drift_record_table(drift_records(results(1)), marks_s));
-  const std::string two = to_csv(drift_record_table(drift_records(results(2)), marks_s));
+  const std::vector<double>& marks_s = evaluation::default_drift_marks_s();
+  const std::string one = evaluation::to_csv(
+      evaluation::drift_record_table(evaluation::drift_records(results(1)), marks_s));
+  const std::string two = evaluation::to_csv(
+      evaluation::drift_record_table(evaluation::drift_records(results(2)), marks_s));
   EXPECT_EQ(one, two);
   EXPECT_EQ(std::count(one.begin(), one.end(), '\n'), 1 + 2 * 6);
 }
 
 TEST_F(EvaluationTest, WritesWhatItFound) {
   const test::TestFolder out;
-  const EvaluationSummary summary(results(2));
+  const evaluation::EvaluationSummary summary(results(2));
   EvaluationLabels labels;
   labels.origin = {"foucault evaluate trip.rawlog", "imu: {preset: ADIS16465}\n", "1"};
   Console console(true);
@@ -112,16 +114,16 @@ TEST_F(EvaluationTest, DriftByDistanceOfATripThatGoesFar) {
   far.outages.first_s = 100;
   far.outages.period_s = 30;
   far.outages.shifts_s = {0, 15};
-  const EvaluationSummary summary(
+  const evaluation::EvaluationSummary summary(
       evaluate(cross({folder / "flight.rawlog"}, {"ekf", "full"}, far), 2, console));
 
   ASSERT_EQ(summary.distances().size(), 1u);
-  const DistanceProfile& profile = summary.distances()[0];
+  const evaluation::DistanceProfile& profile = summary.distances()[0];
   EXPECT_EQ(profile.group, "flight");
   std::size_t outages = 0;
-  for (const ProfileBin& bin : profile.bins) outages += bin.bin.outages.size();
+  for (const evaluation::ProfileBin& bin : profile.bins) outages += bin.bin.outages.size();
   EXPECT_EQ(outages, summary.overall()[0].entries.size());
-  EXPECT_GT(profile.bins.back().bin.to_km, kFarKm);
+  EXPECT_GT(profile.bins.back().bin.to_km, evaluation::kFarKm);
 
   write_evaluation(summary, {}, false, folder.path(), console);
   const auto json = nlohmann::json::parse(folder.text("metrics.json"));
@@ -130,7 +132,7 @@ TEST_F(EvaluationTest, DriftByDistanceOfATripThatGoesFar) {
   EXPECT_GT(first["methods"]["full"]["horizontal_rmse_m"]["value"], 0);
   EXPECT_FALSE(folder.text("tables/distance.csv").empty());
   const test::Table drifts(folder / "drift.csv");
-  EXPECT_GT(drifts.column("distance_km").back(), kFarKm);
+  EXPECT_GT(drifts.column("distance_km").back(), evaluation::kFarKm);
 
   const content::EvaluationReport report = evaluation_report(summary, {});
   ASSERT_EQ(report.distances.size(), 1u);
@@ -141,12 +143,12 @@ TEST_F(EvaluationTest, DriftByDistanceOfATripThatGoesFar) {
 
 /// The report's numbers are those of metrics.json.
 TEST_F(EvaluationTest, ReportHoldsAllFigures) {
-  const EvaluationSummary summary(results(2));
+  const evaluation::EvaluationSummary summary(results(2));
   const content::EvaluationReport report = evaluation_report(summary, {});
   EXPECT_THAT(report.methods, ElementsAre("ekf", "rough"));
   ASSERT_EQ(report.rms.size(), 2u);
   EXPECT_DOUBLE_EQ(report.rms[0].horizontal_m.value,
-                   root_mean_square(summary.overall()[0].horizontal_max()));
+                   evaluation::root_mean_square(summary.overall()[0].horizontal_max()));
   ASSERT_EQ(report.cases.size(), 1u);
   ASSERT_EQ(report.cases[0].methods.size(), 2u);
   EXPECT_EQ(report.cases[0].methods[0].outages.size(), 6u);
@@ -187,7 +189,7 @@ TEST(Cross, NothingTwice) {
 
 TEST(ExperimentRuns, OneAShift) {
   EvaluationCase c{"a.rawlog", "a", "ADIS16465", "ekf", "tuned ekf", Settings()};
-  const std::vector<ExperimentRun> runs = experiment_runs(c);
+  const std::vector<evaluation::ExperimentRun> runs = experiment_runs(c);
   ASSERT_EQ(runs.size(), 2u);
   EXPECT_EQ(runs[1].method, "tuned ekf");
   EXPECT_EQ(runs[1].shift_s, 75);
@@ -200,8 +202,9 @@ TEST(ExperimentRuns, OneAShift) {
 
 TEST(ExperimentRuns, ErrorsOfTheEstimatorNameTheRecording) {
   const EvaluationCase c{"a.rawlog", "a", "ADIS16465", "ekf", "", Settings()};
-  Sink sink;
-  const std::unique_ptr<Estimator> estimator = experiment_runs(c)[0].make_estimator({}, sink);
+  state::Sink sink;
+  const std::unique_ptr<state::Estimator> estimator =
+      experiment_runs(c)[0].make_estimator({}, sink);
   try {
     estimator->finish();  // without a single measurement
     FAIL();

@@ -51,7 +51,7 @@ TEST(Settings, SimulationReadsBackToo) {
 
 TEST(Methods, AllOfThemCanBeMade) {
   const Settings settings;
-  Sink sink;
+  state::Sink sink;
   for (const Method& method : methods()) {
     EXPECT_NE(method.make(settings, {}, sink), nullptr) << method.name;
   }

@@ -19,8 +19,8 @@ using testing::HasSubstr;
 using testing::Not;
 
 /// A log in which everything that can be told is there.
-RawlogInfo troubled_log() {
-  RawlogInfo info;
+rawlog::RawlogInfo troubled_log() {
+  rawlog::RawlogInfo info;
   info.path = "trip.rawlog";
   info.compressed = info.sensory_frames = true;
   info.imu_label = "IMU";
@@ -28,7 +28,7 @@ RawlogInfo troubled_log() {
   info.imu_not_finite = 3;
   info.damage = "breaks off";
   info.other_records["CActionCollection"] = 4;
-  StreamInfo imu;
+  rawlog::StreamInfo imu;
   imu.label = "IMU";
   imu.last_ns = 10'000'000'000;
   imu.median_interval = 0.01;
@@ -36,11 +36,11 @@ RawlogInfo troubled_log() {
   imu.backward = imu.without_stamp = 1;
   imu.gap_count = 1;
   imu.longest_gaps = {{2'000'000'000, 0.5}};
-  StreamInfo gnss;
+  rawlog::StreamInfo gnss;
   gnss.label = "GNSS";
   gnss.duplicates = 2;
   info.streams = {imu, gnss};
-  GnssInfo receiver;
+  rawlog::GnssInfo receiver;
   receiver.label = "GNSS";
   receiver.not_finite = receiver.bad_sigma = 1;
   receiver.p_v = Eigen::Vector3d(0.1, -0.3, -0.8);
@@ -93,11 +93,11 @@ RunResult some_result() {
   result.metrics.consistency.nis.samples = 10;
   result.metrics.consistency.nis.mean = 3;
   result.metrics.aids["wheel_speed"] = {1, 2, 0, 2.0};
-  ReferenceMetrics reference;
+  evaluation::ReferenceMetrics reference;
   reference.roll_rmse = reference.pitch_rmse = reference.heading_rmse = 0.01;
   reference.position_inside.samples = 1;
   result.metrics.reference = reference;
-  result.calibration = {{block::gyro_bias, {1, 2, 3}, {1, 1, 1}}};
+  result.calibration = {{state::block::gyro_bias, {1, 2, 3}, {1, 1, 1}}};
   result.profile = {{Stage::read, 1, 1}};
   result.damage = "breaks off";
   result.resources.wall_s = 1;

@@ -18,20 +18,20 @@ using exports::Object;
 
 constexpr std::size_t kGapsShown = 5;
 
-double rate_hz(const StreamInfo& stream) {
+double rate_hz(const rawlog::StreamInfo& stream) {
   return stream.median_interval > 0 ? 1 / stream.median_interval : 0;
 }
 
-double length_s(const StreamInfo& stream) {
+double length_s(const rawlog::StreamInfo& stream) {
   return seconds_between(stream.first_ns, stream.last_ns);
 }
 
-Eigen::Vector3d mounting_rpy_deg(const Mounting& mounting) {
+Eigen::Vector3d mounting_rpy_deg(const state::Mounting& mounting) {
   const so3::Euler euler = so3::to_euler(mounting.q_v_b);
   return Eigen::Vector3d(euler.roll, euler.pitch, so3::wrap(euler.heading)) * units::kDegrees;
 }
 
-void add_notes(const StreamInfo& s, std::vector<std::string>& notes) {
+void add_notes(const rawlog::StreamInfo& s, std::vector<std::string>& notes) {
   if (s.backward > 0) notes.push_back(fmt::format("{}: {} stamps go back", s.label, s.backward));
   if (s.burst_samples > 0) {
     notes.push_back(fmt::format(
@@ -45,7 +45,7 @@ void add_notes(const StreamInfo& s, std::vector<std::string>& notes) {
   }
 }
 
-void add_notes(const GnssInfo& r, std::vector<std::string>& notes) {
+void add_notes(const rawlog::GnssInfo& r, std::vector<std::string>& notes) {
   if (r.not_finite > 0) {
     notes.push_back(fmt::format("{}: {} fixes are not finite, the first at {}; they are left out",
                                 r.label, r.not_finite, utc_text(r.first_not_finite_ns)));
@@ -57,7 +57,7 @@ void add_notes(const GnssInfo& r, std::vector<std::string>& notes) {
 }
 
 /// What a user should know before processing the log, a line each.
-std::vector<std::string> health_notes(const RawlogInfo& info) {
+std::vector<std::string> health_notes(const rawlog::RawlogInfo& info) {
   std::vector<std::string> notes;
   if (info.damage) notes.push_back("damaged: " + *info.damage);
   if (info.imu_label.empty()) notes.emplace_back("no IMU: 'run' cannot process it");
@@ -66,22 +66,22 @@ std::vector<std::string> health_notes(const RawlogInfo& info) {
     notes.push_back(fmt::format("{} IMU samples are not finite, the first at {}; they are left out",
                                 info.imu_not_finite, utc_text(info.first_imu_not_finite_ns)));
   }
-  for (const StreamInfo& stream : info.streams) add_notes(stream, notes);
-  for (const GnssInfo& receiver : info.receivers) add_notes(receiver, notes);
+  for (const rawlog::StreamInfo& stream : info.streams) add_notes(stream, notes);
+  for (const rawlog::GnssInfo& receiver : info.receivers) add_notes(receiver, notes);
   return notes;
 }
 
-std::string stream_text(const StreamInfo& s) {
+std::string stream_text(const rawlog::StreamInfo& s) {
   std::string text =
       fmt::format("  {:<14} {:<22} {:>9}  {:>8.2f} Hz  {} .. {} ({:.1f} s)\n", s.label, s.type,
                   s.count, rate_hz(s), utc_text(s.first_ns), utc_text(s.last_ns), length_s(s));
   if (s.gap_count == 0) return text;
   text += fmt::format("  {:<14} {} gaps; the longest:", "", s.gap_count);
-  std::vector<Gap> gaps = s.longest_gaps;
+  std::vector<rawlog::Gap> gaps = s.longest_gaps;
   std::sort(gaps.begin(), gaps.end(),
-            [](const Gap& a, const Gap& b) { return a.length > b.length; });
+            [](const rawlog::Gap& a, const rawlog::Gap& b) { return a.length > b.length; });
   gaps.resize(std::min(gaps.size(), kGapsShown));
-  for (const Gap& gap : gaps) {
+  for (const rawlog::Gap& gap : gaps) {
     text +=
         fmt::format(" {:.3f} s at +{:.1f} s;", gap.length, seconds_between(s.first_ns, gap.t_ns));
   }
@@ -89,7 +89,7 @@ std::string stream_text(const StreamInfo& s) {
   return text;
 }
 
-std::string receiver_text(const GnssInfo& r) {
+std::string receiver_text(const rawlog::GnssInfo& r) {
   std::string text = fmt::format("  {:<14}", r.label);
   for (const auto& [quality, count] : r.qualities) {
     text += fmt::format(" {} {},", count, quality_name(quality));
@@ -112,9 +112,9 @@ std::string receiver_text(const GnssInfo& r) {
 
 Json vector_json(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
-Json stream_json(const StreamInfo& s) {
+Json stream_json(const rawlog::StreamInfo& s) {
   Json gaps = Json::array();
-  for (const Gap& gap : s.longest_gaps) {
+  for (const rawlog::Gap& gap : s.longest_gaps) {
     gaps.push_back(Object().with("t_unix_s", to_seconds(gap.t_ns)).with("length_s", gap.length));
   }
   return Object()
@@ -140,7 +140,7 @@ Json geodetic_json(const Geodetic& p) {
       .with("height_m", p.height);
 }
 
-Json receiver_json(const GnssInfo& r) {
+Json receiver_json(const rawlog::GnssInfo& r) {
   Json qualities = Json::object();
   for (const auto& [quality, count] : r.qualities) qualities[quality_name(quality)] = count;
   Json json = Object()
@@ -178,15 +178,15 @@ std::string quality_name(FixQuality quality) {
   return "unknown";
 }
 
-std::string rawlog_text(const RawlogInfo& info) {
+std::string rawlog_text(const rawlog::RawlogInfo& info) {
   std::string text = fmt::format("{}: {:.1f} MB{}, {} records{}\n", info.path,
                                  1e-6 * static_cast<double>(info.file_bytes),
                                  info.compressed ? ", compressed" : "", info.records,
                                  info.sensory_frames ? ", in sensory frames" : "");
   text += "streams\n";
-  for (const StreamInfo& stream : info.streams) text += stream_text(stream);
+  for (const rawlog::StreamInfo& stream : info.streams) text += stream_text(stream);
   if (!info.receivers.empty()) text += "GNSS\n";
-  for (const GnssInfo& receiver : info.receivers) text += receiver_text(receiver);
+  for (const rawlog::GnssInfo& receiver : info.receivers) text += receiver_text(receiver);
   if (info.mounting) {
     const Eigen::Vector3d rpy = mounting_rpy_deg(*info.mounting);
     text += fmt::format("IMU\n  {:<14} mounted at roll {:.2f}, pitch {:.2f}, heading {:.2f} deg\n",
@@ -202,7 +202,7 @@ std::string rawlog_text(const RawlogInfo& info) {
   return text;
 }
 
-std::string rawlog_json(const RawlogInfo& info) {
+std::string rawlog_json(const rawlog::RawlogInfo& info) {
   Json json =
       Object()
           .with("path", info.path)
@@ -216,8 +216,10 @@ std::string rawlog_json(const RawlogInfo& info) {
                 Object().with("label", info.imu_label).with("not_finite", info.imu_not_finite))
           .with("other_records", info.other_records)
           .with("health", health_notes(info));
-  for (const StreamInfo& stream : info.streams) json["streams"].push_back(stream_json(stream));
-  for (const GnssInfo& receiver : info.receivers) json["gnss"].push_back(receiver_json(receiver));
+  for (const rawlog::StreamInfo& stream : info.streams)
+    json["streams"].push_back(stream_json(stream));
+  for (const rawlog::GnssInfo& receiver : info.receivers)
+    json["gnss"].push_back(receiver_json(receiver));
   if (info.mounting) {
     json["imu"]["mounting_rpy_deg"] = vector_json(mounting_rpy_deg(*info.mounting));
   }

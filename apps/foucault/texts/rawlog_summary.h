@@ -7,8 +7,8 @@
 namespace foucault::app {
 
 /// Contents of a rawlog for people and for programs.
-std::string rawlog_text(const RawlogInfo& info);
-std::string rawlog_json(const RawlogInfo& info);
+std::string rawlog_text(const rawlog::RawlogInfo& info);
+std::string rawlog_json(const rawlog::RawlogInfo& info);
 
 /// Name of a fix quality in outputs, e.g. "fixed_rtk".
 std::string quality_name(FixQuality quality);

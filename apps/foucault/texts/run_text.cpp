@@ -27,13 +27,13 @@ Json profile_json(const std::vector<StageTime>& profile) {
 }
 
 /// "-" if no fix counts for the statistics.
-std::string innovation_text(const GnssMetrics& gnss) {
+std::string innovation_text(const evaluation::GnssMetrics& gnss) {
   if (gnss.samples == 0) return "-";
   const Eigen::Vector3d& v = gnss.innovation_rms_n;
   return fmt::format("{:.2f} / {:.2f} / {:.2f} cm", 100 * v.x(), 100 * v.y(), 100 * v.z());
 }
 
-std::string attitude_text(const ReferenceMetrics& r) {
+std::string attitude_text(const evaluation::ReferenceMetrics& r) {
   if (!r.roll_rmse || !r.pitch_rmse || !r.heading_rmse) return "";
   return fmt::format("; roll {:.3f}, pitch {:.3f}, heading {:.3f} deg",
                      *r.roll_rmse * units::kDegrees, *r.pitch_rmse * units::kDegrees,
@@ -63,7 +63,7 @@ std::string metrics_json(const RunResult& result) {
 }
 
 std::vector<std::string> metrics_lines(const RunResult& result) {
-  const RunMetrics& m = result.metrics;
+  const evaluation::RunMetrics& m = result.metrics;
   std::vector<std::string> lines{
       fmt::format("method     {}, {} epochs over {:.1f} s", result.method, m.epochs, m.duration_s),
       fmt::format("GNSS       {} fixes used, {} rejected; innovation RMS north / east / down {}",
@@ -72,7 +72,7 @@ std::vector<std::string> metrics_lines(const RunResult& result) {
     lines.push_back(fmt::format("aid        {}: {} used, {} rejected; mean NIS {:.2f}", name,
                                 aid.used, aid.rejected, aid.mean_nis()));
   }
-  for (const CalibratedBlock& b : result.calibration) {
+  for (const evaluation::CalibratedBlock& b : result.calibration) {
     lines.push_back(fmt::format("calibrated {} [{}]: {:.3g} +- {:.2g}", b.block.name, b.block.unit,
                                 fmt::join(b.value, " "), fmt::join(b.sigma, " ")));
   }

@@ -160,7 +160,7 @@ Eigen::Vector3d StartPlane::north_east_up(const Geodetic& place) const {
           place.height - start_.height};
 }
 
-RunData::RunData(const Mounting& mounting, double statistics_from)
+RunData::RunData(const state::Mounting& mounting, double statistics_from)
     : mounting_(mounting), statistics_from_(statistics_from) {
   for (Triad* triad : {&position_error, &velocity_error, &attitude_error, &innovation, &postfit}) {
     triad->statistics_from = statistics_from;
@@ -186,29 +186,30 @@ void RunData::mark_gap() {
   for (DecimatedTable* nees : {&position_nees, &velocity_nees, &attitude_nees}) nees->add_gap();
 }
 
-void RunData::add(const Epoch& epoch) {
+void RunData::add(const state::Epoch& epoch) {
   const double t = seconds(epoch.t_ns);
   epoch_steps.observe(t);
   if (epoch_steps.last_was_gap()) mark_gap();
 
   const Eigen::Vector3d p = place(epoch.position);
   track.add(t, {p.x(), p.y()});
-  position.add(t, p, epoch.sigma_of(block::position));
-  velocity.add(t, epoch.velocity_n, epoch.sigma_of(block::velocity));
+  position.add(t, p, epoch.sigma_of(state::block::position));
+  velocity.add(t, epoch.velocity_n, epoch.sigma_of(state::block::velocity));
   gyro_bias.add(t, kDegreesPerHour * epoch.bias.gyro,
-                kDegreesPerHour * epoch.sigma_of(block::gyro_bias));
-  accel_bias.add(t, kMilligal * epoch.bias.accel, kMilligal * epoch.sigma_of(block::accel_bias));
+                kDegreesPerHour * epoch.sigma_of(state::block::gyro_bias));
+  accel_bias.add(t, kMilligal * epoch.bias.accel,
+                 kMilligal * epoch.sigma_of(state::block::accel_bias));
 
-  const VehicleAttitude vehicle = vehicle_attitude(epoch, mounting_);
+  const state::VehicleAttitude vehicle = state::vehicle_attitude(epoch, mounting_);
   so3::Euler euler = vehicle.euler;
   if (last_heading_) euler.heading = *last_heading_ + so3::wrap(euler.heading - *last_heading_);
   last_heading_ = euler.heading;
   attitude.add(t, degrees(euler), kDegrees * vehicle.sigma);
 }
 
-void RunData::add(const FixResult& fix) {
+void RunData::add(const state::FixResult& fix) {
   const double t = seconds(fix.t_ns);
-  const bool used = fix.verdict == FixVerdict::used;
+  const bool used = fix.verdict == state::FixVerdict::used;
   ++qualities[fix.quality];
   ++verdicts[fix.verdict];
   watch_verdict(t, fix.verdict);
@@ -232,7 +233,7 @@ void RunData::add(const FixResult& fix) {
 }
 
 /// A stretch goes on as long as all fixes fare alike and none is missing.
-void RunData::watch_verdict(double t, FixVerdict verdict) {
+void RunData::watch_verdict(double t, state::FixVerdict verdict) {
   const double step = t - last_fix_;
   const bool goes_on =
       last_verdict_ == verdict && step >= 0 && step <= all_fix_steps_.longest_usual();
@@ -242,7 +243,7 @@ void RunData::watch_verdict(double t, FixVerdict verdict) {
   } else {
     stretches.begin(t);
   }
-  if (verdict != FixVerdict::out_of_order) all_fix_steps_.observe(t);
+  if (verdict != state::FixVerdict::out_of_order) all_fix_steps_.observe(t);
   last_verdict_ = verdict;
   last_fix_ = t;
 }
@@ -262,16 +263,16 @@ void RunData::add(const NormalizedSquare& square) {
   }
 }
 
-void RunData::add(const Notice& notice) {
+void RunData::add(const state::Notice& notice) {
   ++notices_seen;
   if (notices.size() < kMostNotices) notices.push_back(notice);
 }
 
-void RunData::add(const Epoch& epoch, const ReferenceError& error) {
+void RunData::add(const state::Epoch& epoch, const state::ReferenceError& error) {
   const double t = seconds(error.t_ns);
-  position_error.add(t, error.position_n, epoch.sigma_of(block::position));
+  position_error.add(t, error.position_n, epoch.sigma_of(state::block::position));
   if (error.velocity_n) {
-    velocity_error.add(t, *error.velocity_n, epoch.sigma_of(block::velocity));
+    velocity_error.add(t, *error.velocity_n, epoch.sigma_of(state::block::velocity));
   }
   if (error.euler) {
     attitude_error.add(t, kDegrees * *error.euler,
@@ -296,7 +297,7 @@ std::vector<Interval> RunData::outages() const {
 }
 
 std::string RunData::not_used_name() const {
-  return verdicts.count(FixVerdict::corrected) > 0 ? "rejected or corrected" : "rejected";
+  return verdicts.count(state::FixVerdict::corrected) > 0 ? "rejected or corrected" : "rejected";
 }
 
 }  // namespace foucault::content

@@ -125,14 +125,14 @@ class StartPlane {
 class RunData {
  public:
   /// Statistics are over what comes from `statistics_from` [s] on.
-  RunData(const Mounting& mounting, double statistics_from);
+  RunData(const state::Mounting& mounting, double statistics_from);
 
   double statistics_from() const { return statistics_from_; }
 
-  void add(const Epoch& epoch);
-  void add(const FixResult& fix);
-  void add(const Notice& notice);
-  void add(const Epoch& epoch, const ReferenceError& error);
+  void add(const state::Epoch& epoch);
+  void add(const state::FixResult& fix);
+  void add(const state::Notice& notice);
+  void add(const state::Epoch& epoch, const state::ReferenceError& error);
   void add(const NormalizedSquare& square);
   void add_imu_stamp(int64_t t_ns);
   void add_outage(int64_t begin_ns, int64_t end_ns);
@@ -162,15 +162,15 @@ class RunData {
   plot::DecimatedTable attitude_nees{1};
   std::optional<Consistency> consistency;
   std::map<FixQuality, size_t> qualities;
-  std::map<FixVerdict, size_t> verdicts;
+  std::map<state::FixVerdict, size_t> verdicts;
   /// What to call the fixes that were not used as they are.
   std::string not_used_name() const;
-  std::map<FixVerdict, Stretches> verdict_stretches;
+  std::map<state::FixVerdict, Stretches> verdict_stretches;
   StepWatch imu_steps{0.2};
   StepWatch fix_steps{4.0};  ///< between used fixes
   StepWatch epoch_steps{3.0};
   std::vector<Interval> outages() const;
-  std::vector<Notice> notices;  ///< the first ones
+  std::vector<state::Notice> notices;  ///< the first ones
   size_t notices_seen = 0;
 
  private:
@@ -182,15 +182,15 @@ class RunData {
   double seconds(int64_t t_ns);
   Eigen::Vector3d place(const Geodetic& geodetic);
   void mark_gap();
-  void watch_verdict(double t, FixVerdict verdict);
+  void watch_verdict(double t, state::FixVerdict verdict);
 
-  Mounting mounting_;
+  state::Mounting mounting_;
   double statistics_from_;
   std::vector<Stretch> outages_;
   std::optional<int64_t> start_ns_;
   std::optional<StartPlane> plane_;
   StepWatch all_fix_steps_{4.0};
-  std::optional<FixVerdict> last_verdict_;
+  std::optional<state::FixVerdict> last_verdict_;
   double last_fix_ = 0;                 // [s], whatever became of it
   std::optional<double> last_heading_;  // [rad], continuous
 };

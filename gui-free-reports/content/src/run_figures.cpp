@@ -452,7 +452,7 @@ Panel type_panel(const RunData& data) {
   panel.y.kind = AxisKind::category;
   const DecimatedTable::Rows rows = data.fix_types.rows();
   std::map<int, double> place;
-  if (data.verdicts.size() > data.verdicts.count(FixVerdict::used)) {
+  if (data.verdicts.size() > data.verdicts.count(state::FixVerdict::used)) {
     panel.y.categories.emplace_back(data.not_used_name());
   }
   for (const auto& [quality, count] : data.qualities) {

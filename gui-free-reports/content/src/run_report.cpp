@@ -80,7 +80,7 @@ bool has_content(const Section& section) {
 
 class RunReport::Collector {
  public:
-  Collector(RunLabels run_labels, const Mounting& mounting)
+  Collector(RunLabels run_labels, const state::Mounting& mounting)
       : labels(std::move(run_labels)), data(mounting, labels.statistics_from_s) {}
 
   std::string subtitle() const {
@@ -138,18 +138,18 @@ class RunReport::Collector {
   std::vector<Table> tables;
 };
 
-RunReport::RunReport(RunLabels labels, const Mounting& mounting)
+RunReport::RunReport(RunLabels labels, const state::Mounting& mounting)
     : collector_(std::make_unique<Collector>(std::move(labels), mounting)) {}
 
 RunReport::~RunReport() = default;
 
-void RunReport::epoch(const Epoch& epoch) { collector_->data.add(epoch); }
+void RunReport::epoch(const state::Epoch& epoch) { collector_->data.add(epoch); }
 
-void RunReport::fix(const FixResult& fix) { collector_->data.add(fix); }
+void RunReport::fix(const state::FixResult& fix) { collector_->data.add(fix); }
 
-void RunReport::notice(const Notice& notice) { collector_->data.add(notice); }
+void RunReport::notice(const state::Notice& notice) { collector_->data.add(notice); }
 
-void RunReport::reference_error(const Epoch& epoch, const ReferenceError& error) {
+void RunReport::reference_error(const state::Epoch& epoch, const state::ReferenceError& error) {
   collector_->data.add(epoch, error);
 }
 

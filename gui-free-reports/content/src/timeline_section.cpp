@@ -21,13 +21,13 @@ using namespace page;
 
 namespace {
 
-constexpr std::array<FixVerdict, 5> kRejections{FixVerdict::gated, FixVerdict::corrected,
-                                                FixVerdict::low_quality, FixVerdict::bad_sigma,
-                                                FixVerdict::out_of_order};
+constexpr std::array<state::FixVerdict, 5> kRejections{
+    state::FixVerdict::gated, state::FixVerdict::corrected, state::FixVerdict::low_quality,
+    state::FixVerdict::bad_sigma, state::FixVerdict::out_of_order};
 constexpr double kLaneHeight = 8.5;  // [mm]
 
 struct EventStyle {
-  NoticeKind kind;
+  state::NoticeKind kind;
   std::string_view lane;
   const char* name;
   Shape shape;
@@ -39,21 +39,21 @@ constexpr std::string_view kAlignment = "alignment";
 
 /// Later ones are drawn over earlier ones.
 constexpr std::array<EventStyle, 5> kEvents{{
-    {NoticeKind::skipped, kNotices, "notice", Shape::diamond, Ink::gray},
-    {NoticeKind::fix_rejected, kNotices, "fix rejected", Shape::cross, Ink::vermillion},
-    {NoticeKind::imu_gap, kNotices, "IMU gap", Shape::square, Ink::purple},
-    {NoticeKind::aligned, kAlignment, "aligned", Shape::triangle, Ink::green},
-    {NoticeKind::realigned, kAlignment, "aligned again", Shape::triangle, Ink::orange},
+    {state::NoticeKind::skipped, kNotices, "notice", Shape::diamond, Ink::gray},
+    {state::NoticeKind::fix_rejected, kNotices, "fix rejected", Shape::cross, Ink::vermillion},
+    {state::NoticeKind::imu_gap, kNotices, "IMU gap", Shape::square, Ink::purple},
+    {state::NoticeKind::aligned, kAlignment, "aligned", Shape::triangle, Ink::green},
+    {state::NoticeKind::realigned, kAlignment, "aligned again", Shape::triangle, Ink::orange},
 }};
 
-std::string notice_name(NoticeKind kind) {
+std::string notice_name(state::NoticeKind kind) {
   for (const EventStyle& event : kEvents) {
     if (event.kind == kind) return event.name;
   }
   return {};
 }
 
-size_t count_of(const RunData& data, FixVerdict verdict) {
+size_t count_of(const RunData& data, state::FixVerdict verdict) {
   const auto found = data.verdicts.find(verdict);
   return found == data.verdicts.end() ? 0 : found->second;
 }
@@ -71,33 +71,34 @@ std::string plural(size_t count, const std::string& one, const std::string& more
 }
 
 struct VerdictName {
-  FixVerdict verdict;
+  state::FixVerdict verdict;
   const char* brief;
   const char* whole;
 };
 
 constexpr std::array<VerdictName, 6> kVerdicts{
-    {{FixVerdict::used, "used", "used"},
-     {FixVerdict::bad_sigma, "bad sigma", "rejected: bad sigma"},
-     {FixVerdict::gated, "gated", "rejected: too far from the prediction"},
-     {FixVerdict::corrected, "corrected", "used less an error that lasts"},
-     {FixVerdict::low_quality, "low quality", "rejected: quality too low"},
-     {FixVerdict::out_of_order, "out of order", "rejected: out of order"}}};
+    {{state::FixVerdict::used, "used", "used"},
+     {state::FixVerdict::bad_sigma, "bad sigma", "rejected: bad sigma"},
+     {state::FixVerdict::gated, "gated", "rejected: too far from the prediction"},
+     {state::FixVerdict::corrected, "corrected", "used less an error that lasts"},
+     {state::FixVerdict::low_quality, "low quality", "rejected: quality too low"},
+     {state::FixVerdict::out_of_order, "out of order", "rejected: out of order"}}};
 
-const VerdictName& name_of(FixVerdict verdict) {
+const VerdictName& name_of(state::FixVerdict verdict) {
   return *std::find_if(kVerdicts.begin(), kVerdicts.end() - 1,
                        [verdict](const VerdictName& name) { return name.verdict == verdict; });
 }
 
 size_t rejected_fixes(const RunData& data) {
-  return fixes(data) - count_of(data, FixVerdict::used) - count_of(data, FixVerdict::corrected);
+  return fixes(data) - count_of(data, state::FixVerdict::used) -
+         count_of(data, state::FixVerdict::corrected);
 }
 
 std::string rejection_text(const RunData& data) {
   std::vector<std::string> kinds;
-  for (const FixVerdict verdict : kRejections) {
+  for (const state::FixVerdict verdict : kRejections) {
     const size_t count = count_of(data, verdict);
-    if (count > 0 && verdict != FixVerdict::corrected)
+    if (count > 0 && verdict != state::FixVerdict::corrected)
       kinds.push_back(fmt::format("{} {}", count, name_of(verdict).brief));
   }
   const size_t rejected = rejected_fixes(data);
@@ -120,15 +121,16 @@ double total_length(const std::vector<Interval>& intervals) {
   return sum;
 }
 
-size_t notices_of(const RunData& data, NoticeKind kind) {
-  return static_cast<size_t>(std::count_if(data.notices.begin(), data.notices.end(),
-                                           [kind](const Notice& n) { return n.kind == kind; }));
+size_t notices_of(const RunData& data, state::NoticeKind kind) {
+  return static_cast<size_t>(
+      std::count_if(data.notices.begin(), data.notices.end(),
+                    [kind](const state::Notice& n) { return n.kind == kind; }));
 }
 
 std::vector<std::string> happenings(const RunData& data) {
   std::vector<std::string> parts;
   if (rejected_fixes(data) > 0) parts.push_back(rejection_text(data));
-  if (const size_t count = count_of(data, FixVerdict::corrected); count > 0) {
+  if (const size_t count = count_of(data, state::FixVerdict::corrected); count > 0) {
     parts.push_back(plural(count, "fix", "fixes") + " used less an error that lasts");
   }
   const std::vector<Interval> gaps = unasked_gaps(data);
@@ -142,9 +144,10 @@ std::vector<std::string> happenings(const RunData& data) {
                                 significant_text(data.imu_steps.gap_duration()),
                                 plural(data.imu_steps.gaps(), "hole", "holes")));
   }
-  const size_t realigned = notices_of(data, NoticeKind::realigned);
+  const size_t realigned = notices_of(data, state::NoticeKind::realigned);
   if (realigned > 0) parts.push_back(plural(realigned, "new alignment", "new alignments"));
-  const size_t others = data.notices_seen - realigned - notices_of(data, NoticeKind::aligned);
+  const size_t others =
+      data.notices_seen - realigned - notices_of(data, state::NoticeKind::aligned);
   if (others > 0) parts.push_back(plural(others, "notice", "notices"));
   return parts;
 }
@@ -162,10 +165,10 @@ Table notice_table(const RunData& data) {
   table.title = "What happened on the way";
   table.of_words = true;
   table.header = {"Time since start", "Event", "Detail"};
-  std::vector<Notice> notices = data.notices;
+  std::vector<state::Notice> notices = data.notices;
   std::stable_sort(notices.begin(), notices.end(),
-                   [](const Notice& a, const Notice& b) { return a.t_ns < b.t_ns; });
-  for (const Notice& notice : notices) {
+                   [](const state::Notice& a, const state::Notice& b) { return a.t_ns < b.t_ns; });
+  for (const state::Notice& notice : notices) {
     const double t = seconds_between(data.start_ns().value_or(notice.t_ns), notice.t_ns);
     table.rows.push_back({number_text(t, 2) + " s", notice_name(notice.kind), notice.text});
   }
@@ -194,10 +197,10 @@ std::vector<Lane> lanes(const RunData& data) {
                       name_of(*verdict).brief, Ink::vermillion,
                       data.verdict_stretches.at(*verdict).intervals()});
   }
-  const size_t used = count_of(data, FixVerdict::used);
+  const size_t used = count_of(data, state::FixVerdict::used);
   if (used > 0) {
     result.push_back({fmt::format("fixes used ({})", used), "used", Ink::blue,
-                      data.verdict_stretches.at(FixVerdict::used).intervals()});
+                      data.verdict_stretches.at(state::FixVerdict::used).intervals()});
   }
   return result;
 }
@@ -261,7 +264,7 @@ Series event_marks(const RunData& data, const EventStyle& style, const Interval&
                    double level) {
   Series marks = points(style.name, style.ink, 8.5, {}, {});
   marks.shape = style.shape;
-  for (const Notice& notice : data.notices) {
+  for (const state::Notice& notice : data.notices) {
     if (notice.kind != style.kind) continue;
     const double t = seconds_between(data.start_ns().value_or(notice.t_ns), notice.t_ns);
     marks.x.push_back(std::clamp(t, whole.begin, whole.end));
@@ -315,7 +318,7 @@ std::optional<Figure> timeline_figure(const RunData& data, const std::string& su
 
 }  // namespace
 
-std::string verdict_name(FixVerdict verdict) { return name_of(verdict).whole; }
+std::string verdict_name(state::FixVerdict verdict) { return name_of(verdict).whole; }
 
 Section timeline_section(const RunData& data, const std::string& subtitle) {
   Section section{"Timeline"};

@@ -38,7 +38,7 @@ TEST(Consistency, HistogramIsADensity) {
 
 TEST(Consistency, WordsFollowTheNumbers) {
   const auto words = [](double mean, double kurtosis, double outside) {
-    RunReport report(kLabels, Mounting{});
+    RunReport report(kLabels, state::Mounting{});
     Consistency c;
     c.nis = {100, 50, mean, {2.3, 3.7}, 0.95};
     c.innovations[2].excess_kurtosis = kurtosis;
@@ -58,7 +58,7 @@ TEST(Consistency, WordsFollowTheNumbers) {
 
 TEST(Consistency, WordsOnPredictionsNameTheLongestHorizonOutsideItsBand) {
   const auto section = [](double after_15, double after_30) {
-    RunReport report(kLabels, Mounting{});
+    RunReport report(kLabels, state::Mounting{});
     Consistency c;
     c.predictions = {
         {5, 10, 3, {1.7, 4.7}}, {15, 10, after_15, {1.7, 4.7}}, {30, 10, after_30, {1.7, 4.7}}};
@@ -77,7 +77,7 @@ TEST(Consistency, WordsOnPredictionsNameTheLongestHorizonOutsideItsBand) {
 
 TEST(Consistency, WordsOnTheReference) {
   const auto words = [](double position, double velocity) {
-    RunReport report(kLabels, Mounting{});
+    RunReport report(kLabels, state::Mounting{});
     Consistency c;
     c.position_nees = SquareConsistency{100, 50, position, {2.3, 3.7}, 0.95};
     c.velocity_nees = SquareConsistency{100, 50, velocity, {2.3, 3.7}, 0.95};

@@ -27,7 +27,7 @@ class DemoDriver {
 
   void drive(RunReport& report) {
     report.notice(
-        {stamp(2), NoticeKind::aligned, "heading 61.3° ± 0.8° from the course over ground"});
+        {stamp(2), state::NoticeKind::aligned, "heading 61.3° ± 0.8° from the course over ground"});
     if (run_.with_outage) report.outage(stamp(kOutage), stamp(kOutage + 60));
     for (int i = 0; i * kStep < run_.duration; ++i) step(i, report);
     report.consistency(consistency());
@@ -62,8 +62,8 @@ class DemoDriver {
     bias_walk_ += noise(0.02);
   }
 
-  Epoch epoch(double t) const {
-    Epoch e;
+  state::Epoch epoch(double t) const {
+    state::Epoch e;
     e.t_ns = stamp(t);
     e.position = place_;
     e.velocity_n = velocity_;
@@ -71,7 +71,7 @@ class DemoDriver {
     e.bias.gyro = (Eigen::Vector3d(12, -30, 55) + bias_walk_) / 206264.8;
     e.bias.accel = 1e-5 * (Eigen::Vector3d(300, -120, 40) + 10 * bias_walk_);
     const double settled = std::exp(-t / 60);
-    NodeVector s;
+    state::NodeVector s;
     s << Eigen::Vector3d::Constant(sigma(t)), Eigen::Vector3d::Constant(0.01 + sigma(t) / 8),
         Eigen::Vector3d(0.001, 0.001, 0.002 + 0.02 * settled),
         Eigen::Vector3d::Constant((4 + 60 * settled) / 206264.8),
@@ -80,12 +80,12 @@ class DemoDriver {
     return e;
   }
 
-  FixResult fix(double t) {
-    FixResult f;
+  state::FixResult fix(double t) {
+    state::FixResult f;
     f.t_ns = stamp(t);
     f.quality = t > 42 && t < 52 ? FixQuality::float_rtk : FixQuality::fixed_rtk;
     if (t > 480 && t < 490) f.quality = FixQuality::single;
-    if (f.quality == FixQuality::single) f.verdict = FixVerdict::gated;
+    if (f.quality == FixQuality::single) f.verdict = state::FixVerdict::gated;
     f.antenna = place_;
     const double scale = f.quality == FixQuality::fixed_rtk   ? 0.014
                          : f.quality == FixQuality::float_rtk ? 0.15
@@ -96,8 +96,8 @@ class DemoDriver {
     return f;
   }
 
-  ReferenceError error(double t) {
-    ReferenceError e;
+  state::ReferenceError error(double t) {
+    state::ReferenceError e;
     e.t_ns = stamp(t);
     e.position_n = drift_;
     e.velocity_n = drift_ / 8 + noise(0.004);
@@ -113,12 +113,12 @@ class DemoDriver {
     return s;
   }
 
-  static void add_fix(const FixResult& fix, RunReport& report) {
+  static void add_fix(const state::FixResult& fix, RunReport& report) {
     report.fix(fix);
     const double variance = fix.innovation_covariance(0, 0);
     NormalizedSquare nis =
         square(NormalizedKind::innovation, fix.t_ns, fix.innovation_n.squaredNorm() / variance);
-    nis.used = fix.verdict == FixVerdict::used;
+    nis.used = fix.verdict == state::FixVerdict::used;
     if (nis.used) nis.running_mean = 2.7;
     report.normalized_square(nis);
   }
@@ -154,10 +154,10 @@ class DemoDriver {
       if (imu_t < 430 || imu_t > 430.8) report.imu_stamp(stamp(imu_t));
     }
     if (!in_outage(t)) add_fix(fix(t), report);
-    const Epoch now = epoch(t);
+    const state::Epoch now = epoch(t);
     report.epoch(now);
     if (!run_.with_reference) return;
-    const ReferenceError now_error = error(t);
+    const state::ReferenceError now_error = error(t);
     report.reference_error(now, now_error);
     report.normalized_square(square(NormalizedKind::position, now_error.t_ns,
                                     now_error.position_n.squaredNorm() / std::pow(sigma(t), 2)));
@@ -186,7 +186,7 @@ inline const RunLabels kLabels{"trip.rawlog", "refined", "foucault 0.1.0",
                                "imu:\n  preset: ADIS16465\n"};
 
 inline page::ReportPage demo_page(const DemoRun& run) {
-  RunReport report(kLabels, Mounting{});
+  RunReport report(kLabels, state::Mounting{});
   fill_demo(run, report);
   return report.page();
 }

@@ -97,7 +97,7 @@ TEST(StartPlane, IsMetricAlongTheEllipsoid) {
 }
 
 TEST(RunData, OutagesAreRelativeToTheFirstStamp) {
-  RunData data(Mounting{}, 0);
+  RunData data(state::Mounting{}, 0);
   data.add_outage(nanoseconds(105), nanoseconds(165));
   EXPECT_TRUE(data.outages().empty()) << "no start yet";
   data.add_imu_stamp(nanoseconds(100));
@@ -107,7 +107,7 @@ TEST(RunData, OutagesAreRelativeToTheFirstStamp) {
 }
 
 TEST(RunData, SquaresGoWhereTheyBelong) {
-  RunData data(Mounting{}, 0);
+  RunData data(state::Mounting{}, 0);
   for (const NormalizedKind kind : {NormalizedKind::innovation, NormalizedKind::position,
                                     NormalizedKind::velocity, NormalizedKind::attitude}) {
     NormalizedSquare square;
@@ -128,23 +128,23 @@ TEST(RunData, SquaresGoWhereTheyBelong) {
 }
 
 TEST(RunData, CountsFixesByQualityAndVerdict) {
-  RunData data(Mounting{}, 0);
-  FixResult fix;
+  RunData data(state::Mounting{}, 0);
+  state::FixResult fix;
   fix.quality = FixQuality::ppp;
   data.add(fix);
   EXPECT_EQ(data.not_used_name(), "rejected");
-  fix.verdict = FixVerdict::corrected;
+  fix.verdict = state::FixVerdict::corrected;
   fix.t_ns = nanoseconds(1);
   data.add(fix);
   EXPECT_EQ(data.not_used_name(), "rejected or corrected");
   EXPECT_EQ(data.qualities.at(FixQuality::ppp), 2U);
-  EXPECT_EQ(data.verdicts.at(FixVerdict::corrected), 1U);
+  EXPECT_EQ(data.verdicts.at(state::FixVerdict::corrected), 1U);
   EXPECT_EQ(data.rejected_innovation.rows.rows_seen(), 1U);
 }
 
 TEST(RunData, KeepsTheFirstNoticesAndCountsAll) {
-  RunData data(Mounting{}, 0);
-  for (int i = 0; i < 300; ++i) data.add(Notice{i, NoticeKind::skipped, ""});
+  RunData data(state::Mounting{}, 0);
+  for (int i = 0; i < 300; ++i) data.add(state::Notice{i, state::NoticeKind::skipped, ""});
   EXPECT_EQ(data.notices.size(), 200U);
   EXPECT_EQ(data.notices_seen, 300U);
 }

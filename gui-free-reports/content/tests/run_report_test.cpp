@@ -51,7 +51,7 @@ TEST(RunReport, ShowsNoErrorsWithoutReference) {
 }
 
 TEST(RunReport, EmptyRunHasAPage) {
-  const RunReport report(kLabels, Mounting{});
+  const RunReport report(kLabels, state::Mounting{});
   EXPECT_TRUE(figure_names(report.page()).empty());
   EXPECT_EQ(report.page().title, "Navigation report");
 }
@@ -83,8 +83,8 @@ TEST(RunReport, BoundsAreThreeSigma) {
 }
 
 TEST(RunReport, PositionIsInMetresFromTheStart) {
-  RunReport report(kLabels, Mounting{});
-  Epoch epoch;
+  RunReport report(kLabels, state::Mounting{});
+  state::Epoch epoch;
   epoch.position = {0.7, 0.1, 100};
   report.epoch(epoch);
   epoch.t_ns += nanoseconds(1);
@@ -98,11 +98,11 @@ TEST(RunReport, PositionIsInMetresFromTheStart) {
 }
 
 TEST(RunReport, HeadingIsTheVehiclesAndHasNoJumps) {
-  Mounting mounting;
+  state::Mounting mounting;
   mounting.q_v_b = so3::from_euler({0, 0, 0.5});
   RunReport report(kLabels, mounting);
   for (int i = 0; i < 100; ++i) {
-    Epoch epoch;
+    state::Epoch epoch;
     epoch.t_ns = nanoseconds(i);
     const Eigen::Quaterniond q_n_v = so3::from_euler({0.1, 0.05, 6.0 + 0.1 * i});
     epoch.q_n_b = q_n_v * mounting.q_v_b;
@@ -117,8 +117,8 @@ TEST(RunReport, HeadingIsTheVehiclesAndHasNoJumps) {
 }
 
 TEST(RunReport, BiasesHaveUnitsOfDataSheets) {
-  RunReport report(kLabels, Mounting{});
-  Epoch epoch;
+  RunReport report(kLabels, state::Mounting{});
+  state::Epoch epoch;
   epoch.bias.gyro.x() = 1.0 / 206264.80624709636;  // 1 deg/h in rad/s
   epoch.bias.accel.z() = 1e-5;                     // 1 mGal
   report.epoch(epoch);
@@ -137,9 +137,9 @@ TEST(RunReport, GapsAreShadedAndNotJoined) {
   }
   EXPECT_EQ(shades, (std::set<std::string>{"GNSS withheld", "no usable GNSS", "IMU gap"}));
 
-  RunReport report(kLabels, Mounting{});
+  RunReport report(kLabels, state::Mounting{});
   for (const int t : {0, 1, 2, 3, 4, 30, 31, 32}) {
-    Epoch epoch;
+    state::Epoch epoch;
     epoch.t_ns = nanoseconds(t);
     report.epoch(epoch);
   }
@@ -152,12 +152,12 @@ TEST(RunReport, GapsAreShadedAndNotJoined) {
 TEST(RunReport, StatisticsLeaveOutTheSettlingTime) {
   RunLabels labels = kLabels;
   labels.statistics_from_s = 50;
-  RunReport report(labels, Mounting{});
+  RunReport report(labels, state::Mounting{});
   for (int t = 0; t < 100; ++t) {
-    Epoch epoch;
+    state::Epoch epoch;
     epoch.t_ns = nanoseconds(t);
     report.epoch(epoch);
-    ReferenceError error;
+    state::ReferenceError error;
     error.t_ns = epoch.t_ns;
     error.position_n = Eigen::Vector3d::Constant(t < 50 ? 10 : 0.02);
     report.reference_error(epoch, error);
@@ -168,9 +168,9 @@ TEST(RunReport, StatisticsLeaveOutTheSettlingTime) {
 }
 
 TEST(RunReport, LongRunsTakeBoundedRoom) {
-  RunReport report(kLabels, Mounting{});
+  RunReport report(kLabels, state::Mounting{});
   for (int i = 0; i < 60000; ++i) {
-    Epoch epoch;
+    state::Epoch epoch;
     epoch.t_ns = nanoseconds(0.1 * i);
     epoch.velocity_n.x() = i == 45678 ? 99 : std::sin(0.01 * i);
     report.epoch(epoch);
@@ -182,9 +182,9 @@ TEST(RunReport, LongRunsTakeBoundedRoom) {
 }
 
 TEST(RunReport, SurvivesNumbersThatAreNotFinite) {
-  RunReport report(kLabels, Mounting{});
+  RunReport report(kLabels, state::Mounting{});
   for (int t = 0; t < 20; ++t) {
-    Epoch epoch;
+    state::Epoch epoch;
     epoch.t_ns = nanoseconds(t);
     if (t == 10) {
       epoch.velocity_n.setConstant(std::numeric_limits<double>::quiet_NaN());
@@ -205,7 +205,7 @@ TEST(RunReport, WritesAWholeFolderThatRedrawsToTheSameBytes) {
   namespace fs = std::filesystem;
   const fs::path folder = fs::path(::testing::TempDir()) / "foucault_run_report_test";
   fs::remove_all(folder);
-  RunReport report(kLabels, Mounting{});
+  RunReport report(kLabels, state::Mounting{});
   fill_demo({}, report);
   report.write(folder);
   const auto content = [&](const char* name) {

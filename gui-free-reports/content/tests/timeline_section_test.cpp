@@ -14,10 +14,10 @@ using namespace page;
 namespace {
 
 TEST(Timeline, NoticesHaveTheirOwnLane) {
-  RunReport report(kLabels, Mounting{});
+  RunReport report(kLabels, state::Mounting{});
   for (int t = 0; t < 50; ++t) report.imu_stamp(nanoseconds(t));
-  report.notice({nanoseconds(1), NoticeKind::aligned, "aligned"});
-  report.notice({nanoseconds(-3600), NoticeKind::skipped, "from another time"});
+  report.notice({nanoseconds(1), state::NoticeKind::aligned, "aligned"});
+  report.notice({nanoseconds(-3600), state::NoticeKind::skipped, "from another time"});
   const ReportPage page = report.page();
   const Panel& panel = figure_of(page, "timeline").panels.at(0);
   EXPECT_EQ(panel.y.categories, (std::vector<std::string>{"notices", "alignment", "IMU"}));
@@ -27,14 +27,14 @@ TEST(Timeline, NoticesHaveTheirOwnLane) {
 }
 
 TEST(Timeline, IsCalmWhenNothingHappens) {
-  RunReport report(kLabels, Mounting{});
+  RunReport report(kLabels, state::Mounting{});
   for (int t = 0; t < 50; ++t) {
     report.imu_stamp(nanoseconds(t));
-    FixResult fix;
+    state::FixResult fix;
     fix.t_ns = nanoseconds(t);
     report.fix(fix);
   }
-  report.notice({nanoseconds(1), NoticeKind::aligned, "aligned"});
+  report.notice({nanoseconds(1), state::NoticeKind::aligned, "aligned"});
   const ReportPage page = report.page();
   EXPECT_EQ(section_of(page, "Timeline").paragraphs.at(0).rfind("Nothing happened", 0), 0U);
   const Panel& panel = figure_of(page, "timeline").panels.at(0);
@@ -73,11 +73,11 @@ TEST(Timeline, ShowsStretchesHolesAndEvents) {
 }
 
 TEST(Timeline, TakesBoundedRoom) {
-  RunReport report(kLabels, Mounting{});
+  RunReport report(kLabels, state::Mounting{});
   for (int i = 0; i < 30'000; ++i) {
-    FixResult fix;
+    state::FixResult fix;
     fix.t_ns = nanoseconds(0.1 * i);
-    fix.verdict = i % 5 == 0 ? FixVerdict::gated : FixVerdict::used;
+    fix.verdict = i % 5 == 0 ? state::FixVerdict::gated : state::FixVerdict::used;
     report.fix(fix);
   }
   const ReportPage page = report.page();

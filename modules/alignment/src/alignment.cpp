@@ -69,8 +69,8 @@ std::string wrong_axes(const std::string& up) {
       up);
 }
 
-std::string describe(const Epoch& epoch, const Quaterniond& q_v_b) {
-  const VehicleAttitude attitude = vehicle_attitude(epoch, Mounting{q_v_b});
+std::string describe(const state::Epoch& epoch, const Quaterniond& q_v_b) {
+  const state::VehicleAttitude attitude = state::vehicle_attitude(epoch, state::Mounting{q_v_b});
   const Vector3d sigma = attitude.sigma / kDegree;
   return fmt::format(
       "roll {:.2f} deg (sigma {:.2f}), pitch {:.2f} ({:.2f}), heading {:.2f} ({:.2f})",
@@ -102,8 +102,8 @@ void AlignmentOptions::fields(ConfigFields& f) {
 
 class Aligner::Impl {
  public:
-  Impl(const AlignmentOptions& options, const ImuNoise& noise, const Mounting& mounting,
-       const Layout& layout)
+  Impl(const AlignmentOptions& options, const imu::ImuNoise& noise, const state::Mounting& mounting,
+       const state::Layout& layout)
       : options_(options),
         noise_(noise),
         layout_(layout),
@@ -119,11 +119,11 @@ class Aligner::Impl {
 
   void add(const GnssFix& fix);
   void add(const ImuIncrement& increment);
-  void restart() { *this = Impl(options_, noise_, Mounting{q_v_b_}, layout_); }
+  void restart() { *this = Impl(options_, noise_, state::Mounting{q_v_b_}, layout_); }
   int64_t earliest_start_ns() const;
   std::string why_not() const;
 
-  std::optional<Epoch> initial_;
+  std::optional<state::Epoch> initial_;
   std::string summary_;
 
  private:
@@ -133,13 +133,13 @@ class Aligner::Impl {
   void note_hole(const ImuIncrement& increment);
   void finish_rest_with_given_heading();
   void start_at_rest(const HeadingOffset& heading, double drift_variance);
-  void accept_moving(const Epoch& epoch);
-  void accept(const Epoch& epoch, const std::string& how);
-  std::optional<std::string> wrong_up(const Epoch& epoch) const;
+  void accept_moving(const state::Epoch& epoch);
+  void accept(const state::Epoch& epoch, const std::string& how);
+  std::optional<std::string> wrong_up(const state::Epoch& epoch) const;
 
   AlignmentOptions options_;
-  ImuNoise noise_;
-  Layout layout_;
+  imu::ImuNoise noise_;
+  state::Layout layout_;
   Quaterniond q_v_b_;
   GivenAngles given_;
 
@@ -246,7 +246,7 @@ void Aligner::Impl::begin_given(const GnssFix& fix) {
   constexpr double kAcceleration = 1.5;  // [m/s^2] within the interval
   const double dt = seconds_between(start.t_ns, fix.t_ns);
   if (dt <= 0) return;
-  const Vector3d velocity_n = LocalFrame(start.antenna).to_local(fix.antenna) / dt;
+  const Vector3d velocity_n = geodesy::LocalFrame(start.antenna).to_local(fix.antenna) / dt;
   const double unknown = kAcceleration * dt / 2;
   const Matrix3d covariance = (start.position_covariance + fix.position_covariance) / (dt * dt) +
                               unknown * unknown * Matrix3d::Identity();
@@ -283,7 +283,8 @@ void Aligner::Impl::start_at_rest(const HeadingOffset& heading, double drift_var
   findings.gyro_covariance = (kReuse * means.gyro_variance.cwiseMax(gyro_white)).asDiagonal();
   findings.heading = heading.offset;
   findings.heading_variance = kReuse * heading.variance + drift_variance;
-  const Epoch epoch = with_given_angles(initial_state(findings, noise_, layout_), q_v_b_, given_);
+  const state::Epoch epoch =
+      with_given_angles(initial_state(findings, noise_, layout_), q_v_b_, given_);
   const std::string source =
       given_.heading ? std::string("heading given")
                      : fmt::format("heading from {} courses up to {:.1f} s later", heading.courses,
@@ -293,7 +294,7 @@ void Aligner::Impl::start_at_rest(const HeadingOffset& heading, double drift_var
 
 /// On its side in a roll or a loop a vehicle is no place to start from, and no proof of wrong axes:
 /// those are as wrong in every stretch.
-void Aligner::Impl::accept_moving(const Epoch& epoch) {
+void Aligner::Impl::accept_moving(const state::Epoch& epoch) {
   constexpr double kLongestManoeuvre = 30;  // [s]
   const std::optional<std::string> up = wrong_up(epoch);
   if (!up) return accept(epoch, "while moving");
@@ -303,7 +304,7 @@ void Aligner::Impl::accept_moving(const Epoch& epoch) {
   }
 }
 
-void Aligner::Impl::accept(const Epoch& epoch, const std::string& how) {
+void Aligner::Impl::accept(const state::Epoch& epoch, const std::string& how) {
   if (const std::optional<std::string> up = wrong_up(epoch)) throw DataError(wrong_axes(*up));
   initial_ = epoch;
   summary_ = fmt::format("aligned {}: {}", how, describe(epoch, q_v_b_));
@@ -311,7 +312,7 @@ void Aligner::Impl::accept(const Epoch& epoch, const std::string& how) {
 
 /// A course is a heading only while the forward axis is about level; axes named wrongly are seen in
 /// that: which axis of the vehicle is up instead.
-std::optional<std::string> Aligner::Impl::wrong_up(const Epoch& epoch) const {
+std::optional<std::string> Aligner::Impl::wrong_up(const state::Epoch& epoch) const {
   constexpr double kSteepest = 60 * kDegree;
   if (all_given() || given_.roll || given_.pitch) return std::nullopt;
   const Vector3d up_v = (epoch.q_n_b * q_v_b_.conjugate()).conjugate() * -Vector3d::UnitZ();
@@ -366,8 +367,8 @@ std::string Aligner::Impl::why_not() const {
   return head + why + remedy;
 }
 
-Aligner::Aligner(const AlignmentOptions& options, const ImuNoise& noise, const Mounting& mounting,
-                 const Layout& layout)
+Aligner::Aligner(const AlignmentOptions& options, const imu::ImuNoise& noise,
+                 const state::Mounting& mounting, const state::Layout& layout)
     : impl_(std::make_unique<Impl>(options, noise, mounting, layout)) {}
 Aligner::~Aligner() = default;
 Aligner::Aligner(Aligner&&) noexcept = default;
@@ -375,7 +376,7 @@ Aligner& Aligner::operator=(Aligner&&) noexcept = default;
 
 void Aligner::add(const GnssFix& fix) { impl_->add(fix); }
 void Aligner::add(const ImuIncrement& increment) { impl_->add(increment); }
-const std::optional<Epoch>& Aligner::initial() const { return impl_->initial_; }
+const std::optional<state::Epoch>& Aligner::initial() const { return impl_->initial_; }
 std::string Aligner::summary() const { return impl_->summary_; }
 int64_t Aligner::earliest_start_ns() const { return impl_->earliest_start_ns(); }
 std::string Aligner::why_not() const { return impl_->why_not(); }

@@ -20,7 +20,7 @@ constexpr double kReversing = -1.0;        // [m/s]
 /// Level attitude with the forward axis at azimuth zero.
 Quaterniond level(const Vector3d& specific_force_b, const Vector3d& forward_b) {
   const Quaterniond q = Quaterniond::FromTwoVectors(specific_force_b, Vector3d(-Vector3d::UnitZ()));
-  const double turned = azimuth(q * forward_b);
+  const double turned = geodesy::azimuth(q * forward_b);
   return Quaterniond(Eigen::AngleAxisd(-turned, Vector3d::UnitZ())) * q;
 }
 
@@ -28,10 +28,10 @@ Quaterniond level(const Vector3d& specific_force_b, const Vector3d& forward_b) {
 
 /// At rest the gyroscopes show their bias and the Earth's rate. Which way the horizontal part of
 /// the latter points is not known yet and it counts as bias; the vertical part turns the heading.
-void CarriedAttitude::rest(const RestMeans& means, double latitude, const ImuNoise& noise) {
+void CarriedAttitude::rest(const RestMeans& means, double latitude, const imu::ImuNoise& noise) {
   attitude_.forward_b = forward_b_;
   attitude_.q_l_b = level(means.accel_b, forward_b_);
-  earth_rate_z_ = wgs84::earth_rate_n(latitude).z();
+  earth_rate_z_ = geodesy::wgs84::earth_rate_n(latitude).z();
   bias_ = means.gyro_b - attitude_.q_l_b.conjugate() * Vector3d(0, 0, earth_rate_z_);
   gravity_ = means.accel_b.norm();
   velocity_l_.setZero();

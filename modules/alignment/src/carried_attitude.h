@@ -17,7 +17,7 @@ class CarriedAttitude {
   explicit CarriedAttitude(const Eigen::Vector3d& forward_b) : forward_b_(forward_b) {}
 
   /// Levels by the means of a rest, which ends now, and takes the gyroscope bias from them.
-  void rest(const RestMeans& means, double latitude, const ImuNoise& noise);
+  void rest(const RestMeans& means, double latitude, const imu::ImuNoise& noise);
   void add(const ImuIncrement& increment);
 
   const LevelAttitude& attitude() const { return attitude_; }

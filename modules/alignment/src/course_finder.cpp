@@ -29,7 +29,7 @@ Eigen::Vector3d forward_l(const LevelAttitude& attitude) {
 
 /// Turn from a to b about the vertical [rad].
 double turn(const LevelAttitude& a, const LevelAttitude& b) {
-  return so3::wrap(azimuth(forward_l(b)) - azimuth(forward_l(a)));
+  return so3::wrap(geodesy::azimuth(forward_l(b)) - geodesy::azimuth(forward_l(a)));
 }
 
 }  // namespace
@@ -77,7 +77,8 @@ bool CourseFinder::acceptable(const Course& course) const {
 }
 
 std::optional<CourseFinder::Course> CourseFinder::course_to(const Record& record) const {
-  const bool coarse = horizontal_sigma(record.fix.position_covariance) > kPreciseSigma;
+  const bool coarse =
+      geodesy::horizontal_sigma(record.fix.position_covariance) > geodesy::kPreciseSigma;
   return coarse && record.fix.velocity_n ? course_by_velocity(record) : course_by_positions(record);
 }
 
@@ -91,7 +92,8 @@ std::optional<CourseFinder::Course> CourseFinder::course_by_positions(const Reco
   if (!run_.empty() && begin->fix.t_ns < run_.back().end_ns) return std::nullopt;
 
   const double dt = seconds_between(begin->fix.t_ns, record.fix.t_ns);
-  const Eigen::Vector3d way_n = LocalFrame(begin->fix.antenna).to_local(record.fix.antenna);
+  const Eigen::Vector3d way_n =
+      geodesy::LocalFrame(begin->fix.antenna).to_local(record.fix.antenna);
   const Eigen::Vector3d mean_forward_l =
       (forward_l(begin->attitude) + forward_l(record.attitude)).normalized();
   const Eigen::Vector3d lever_way_l =
@@ -100,9 +102,10 @@ std::optional<CourseFinder::Course> CourseFinder::course_by_positions(const Reco
   Course course;
   course.begin_ns = begin->fix.t_ns;
   course.end_ns = record.fix.t_ns;
-  course.offset = so3::wrap(azimuth(way_n) - azimuth(length * mean_forward_l + lever_way_l));
+  course.offset =
+      so3::wrap(geodesy::azimuth(way_n) - geodesy::azimuth(length * mean_forward_l + lever_way_l));
   course.sigma =
-      course_sigma(begin->fix.position_covariance + record.fix.position_covariance, way_n);
+      geodesy::course_sigma(begin->fix.position_covariance + record.fix.position_covariance, way_n);
   course.speed = length / dt;
   course.turn_rate = turn(begin->attitude, record.attitude) / dt;
   return course;
@@ -123,8 +126,8 @@ std::optional<CourseFinder::Course> CourseFinder::course_by_velocity(const Recor
   Course course;
   course.begin_ns = last.fix.t_ns;
   course.end_ns = record.fix.t_ns;
-  course.offset = so3::wrap(azimuth(velocity_n) - azimuth(velocity_l));
-  course.sigma = course_sigma(record.fix.velocity_covariance, velocity_n);
+  course.offset = so3::wrap(geodesy::azimuth(velocity_n) - geodesy::azimuth(velocity_l));
+  course.sigma = geodesy::course_sigma(record.fix.velocity_covariance, velocity_n);
   course.speed = speed;
   course.turn_rate = turn(last.attitude, record.attitude) / dt;
   return course;

@@ -14,7 +14,7 @@ namespace foucault::alignment {
 
 namespace {
 
-using namespace block;
+using namespace state::block;
 using Eigen::Matrix3d;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
@@ -24,7 +24,7 @@ constexpr double kGravitySigma = 5e-4;
 constexpr double kContradiction = 25;  // chi-square, 3 degrees of freedom: 2e-5 by chance
 
 Vector3d gravity_n(const Geodetic& position) {
-  return {0, 0, wgs84::normal_gravity(position.latitude, position.height)};
+  return {0, 0, geodesy::wgs84::normal_gravity(position.latitude, position.height)};
 }
 
 double prior_sigma(double turn_on_sigma, double bias_sigma) {
@@ -32,8 +32,8 @@ double prior_sigma(double turn_on_sigma, double bias_sigma) {
 }
 
 /// A scalar that is to be given columns.
-Linearized scalar(const Epoch& epoch, double innovation, double variance) {
-  Linearized z(1, static_cast<int>(epoch.covariance.cols()));
+state::Linearized scalar(const state::Epoch& epoch, double innovation, double variance) {
+  state::Linearized z(1, static_cast<int>(epoch.covariance.cols()));
   z.r[0] = innovation;
   z.R(0, 0) = variance;
   return z;
@@ -41,19 +41,20 @@ Linearized scalar(const Epoch& epoch, double innovation, double variance) {
 
 /// A measured gyroscope bias together with what was known before; unless the two contradict each
 /// other, when the measurement is believed.
-void fuse_gyro_prior(Epoch& epoch, double sigma) {
+void fuse_gyro_prior(state::Epoch& epoch, double sigma) {
   const Matrix3d prior = sigma * sigma * Matrix3d::Identity();
   const Matrix3d sum = epoch.covariance_of(gyro_bias) + prior;
   if (epoch.bias.gyro.dot(sum.ldlt().solve(epoch.bias.gyro)) > kContradiction) return;
   for (int axis = 0; axis < 3; ++axis) {
-    Linearized z = scalar(epoch, -epoch.bias.gyro[axis], sigma * sigma);
-    columns_of(z.H, gyro_bias)(0, axis) = 1;
-    kalman_update(z, epoch, epoch.covariance);
+    state::Linearized z = scalar(epoch, -epoch.bias.gyro[axis], sigma * sigma);
+    state::columns_of(z.H, gyro_bias)(0, axis) = 1;
+    state::kalman_update(z, epoch, epoch.covariance);
   }
 }
 
 /// The length of the specific force against the one expected: bias and scale along it.
-void fuse_force_length(Epoch& epoch, const AlignmentFindings& findings, const Layout& layout) {
+void fuse_force_length(state::Epoch& epoch, const AlignmentFindings& findings,
+                       const state::Layout& layout) {
   const Vector3d& f_b = findings.specific_force_b;
   const Vector3d along_b = f_b.normalized();
   const Vector3d expected_n = specific_force_n(findings);
@@ -61,22 +62,22 @@ void fuse_force_length(Epoch& epoch, const AlignmentFindings& findings, const La
   const double variance = along_b.dot(findings.specific_force_covariance * along_b) +
                           along_n.dot(findings.motion_covariance.block<3, 3>(3, 3) * along_n) +
                           kGravitySigma * kGravitySigma;
-  Linearized z = scalar(epoch, f_b.norm() - expected_n.norm(), variance);
-  columns_of(z.H, accel_bias) = along_b.transpose();
-  if (const SlowBlock* scale = layout.find(accel_scale))
-    columns_of(z.H, *scale) = expected_n.norm() * along_b.cwiseAbs2().transpose();
-  kalman_update(z, epoch, epoch.covariance);
+  state::Linearized z = scalar(epoch, f_b.norm() - expected_n.norm(), variance);
+  state::columns_of(z.H, accel_bias) = along_b.transpose();
+  if (const state::SlowBlock* scale = layout.find(accel_scale))
+    state::columns_of(z.H, *scale) = expected_n.norm() * along_b.cwiseAbs2().transpose();
+  state::kalman_update(z, epoch, epoch.covariance);
 }
 
 /// 0 if they are taken as right.
-double accel_scale_sigma(const Layout& layout) {
-  const SlowBlock* scale = layout.find(accel_scale);
+double accel_scale_sigma(const state::Layout& layout) {
+  const state::SlowBlock* scale = layout.find(accel_scale);
   return scale ? scale->sigma : 0;
 }
 
 /// The prior of the accelerometer bias; wider if one axis shows it to be too narrow.
-double accel_prior_sigma(const AlignmentFindings& findings, const ImuNoise& noise,
-                         const Layout& layout) {
+double accel_prior_sigma(const AlignmentFindings& findings, const imu::ImuNoise& noise,
+                         const state::Layout& layout) {
   const double expected = specific_force_n(findings).norm();
   const double excess = findings.specific_force_b.norm() - expected;
   const double uncertain = std::sqrt(findings.motion_covariance.block<3, 3>(3, 3).trace() +
@@ -87,8 +88,8 @@ double accel_prior_sigma(const AlignmentFindings& findings, const ImuNoise& nois
 }
 
 /// Independent errors in, state errors out: P = J S J^T, block by block.
-StateMatrix covariance_of(const AlignmentFindings& findings, const Quaterniond& q_n_b,
-                          double accel_bias_sigma, const Layout& layout) {
+state::StateMatrix covariance_of(const AlignmentFindings& findings, const Quaterniond& q_n_b,
+                                 double accel_bias_sigma, const state::Layout& layout) {
   constexpr int kFix = 0, kMotion = 3, kForce = 9, kBias = 12, kHeading = 15, kGyro = 16;
   constexpr int kScale = 19, kSources = 22;
   using Jacobian = Eigen::Matrix<double, 3, kSources>;
@@ -118,7 +119,8 @@ StateMatrix covariance_of(const AlignmentFindings& findings, const Quaterniond& 
   by_attitude.col(kHeading) = about;
 
   const Vector3d rate_b =
-      R.transpose() * (wgs84::earth_rate_n(findings.fix.antenna.latitude) + findings.turn_n);
+      R.transpose() *
+      (geodesy::wgs84::earth_rate_n(findings.fix.antenna.latitude) + findings.turn_n);
   Jacobian by_gyro_bias = -so3::skew(rate_b) * by_attitude;
   by_gyro_bias.block<3, 3>(0, kGyro).setIdentity();
 
@@ -128,24 +130,25 @@ StateMatrix covariance_of(const AlignmentFindings& findings, const Quaterniond& 
   Jacobian by_velocity = R * so3::skew(findings.omega_b.cross(lever)) * by_attitude;
   by_velocity.block<3, 3>(0, kMotion) += Matrix3d::Identity();
 
-  StateByColumns<kSources> J = StateByColumns<kSources>::Zero(layout.size(), kSources);
-  rows_of(J, position) = by_position;
-  rows_of(J, velocity) = by_velocity;
-  rows_of(J, attitude) = by_attitude;
-  rows_of(J, gyro_bias) = by_gyro_bias;
-  rows_of(J, accel_bias).middleCols<3>(kBias).setIdentity();
-  if (const SlowBlock* scale = layout.find(accel_scale))
-    columns_of(J.transpose(), *scale).middleRows<3>(kScale).setIdentity();
-  StateMatrix P = J * S * J.transpose();
-  for (const SlowBlock& slow : layout.slow())
-    part(P.diagonal(), slow).setConstant(slow.sigma * slow.sigma);
+  state::StateByColumns<kSources> J =
+      state::StateByColumns<kSources>::Zero(layout.size(), kSources);
+  state::rows_of(J, position) = by_position;
+  state::rows_of(J, velocity) = by_velocity;
+  state::rows_of(J, attitude) = by_attitude;
+  state::rows_of(J, gyro_bias) = by_gyro_bias;
+  state::rows_of(J, accel_bias).middleCols<3>(kBias).setIdentity();
+  if (const state::SlowBlock* scale = layout.find(accel_scale))
+    state::columns_of(J.transpose(), *scale).middleRows<3>(kScale).setIdentity();
+  state::StateMatrix P = J * S * J.transpose();
+  for (const state::SlowBlock& slow : layout.slow())
+    state::part(P.diagonal(), slow).setConstant(slow.sigma * slow.sigma);
   return P;
 }
 
-void place_at_imu(Epoch& epoch, const GnssFix& fix, const Vector3d& antenna_velocity_n,
+void place_at_imu(state::Epoch& epoch, const GnssFix& fix, const Vector3d& antenna_velocity_n,
                   const Vector3d& omega_b) {
   epoch.t_ns = fix.t_ns;
-  epoch.position = LocalFrame(fix.antenna).to_geodetic(-(epoch.q_n_b * fix.p_b_a));
+  epoch.position = geodesy::LocalFrame(fix.antenna).to_geodetic(-(epoch.q_n_b * fix.p_b_a));
   epoch.velocity_n = antenna_velocity_n - epoch.q_n_b * omega_b.cross(fix.p_b_a);
 }
 
@@ -153,7 +156,7 @@ void place_at_imu(Epoch& epoch, const GnssFix& fix, const Vector3d& antenna_velo
 
 /// From v_dot = f + g - 2 omega_ie x v.
 Vector3d specific_force_n(const AlignmentFindings& findings) {
-  const Vector3d earth_rate = wgs84::earth_rate_n(findings.fix.antenna.latitude);
+  const Vector3d earth_rate = geodesy::wgs84::earth_rate_n(findings.fix.antenna.latitude);
   return findings.acceleration_n + 2 * earth_rate.cross(findings.antenna_velocity_n) -
          gravity_n(findings.fix.antenna);
 }
@@ -165,22 +168,23 @@ Quaterniond attitude_of(const AlignmentFindings& findings) {
   // Turning about the force changes the heading by almost the angle: a few rounds are exact.
   const Vector3d axis = force_n.normalized();
   for (int round = 0; round < 20; ++round) {
-    const double missing = so3::wrap(findings.heading - azimuth(q * forward_b));
+    const double missing = so3::wrap(findings.heading - geodesy::azimuth(q * forward_b));
     if (std::abs(missing) < 1e-12) break;
     q = Quaterniond(Eigen::AngleAxisd(axis.z() < 0 ? -missing : missing, axis)) * q;
   }
   return q.normalized();
 }
 
-Epoch initial_state(const AlignmentFindings& findings, const ImuNoise& noise,
-                    const Layout& layout) {
-  Epoch epoch;
-  epoch.slow = SlowVector::Zero(layout.slow_size());
+state::Epoch initial_state(const AlignmentFindings& findings, const imu::ImuNoise& noise,
+                           const state::Layout& layout) {
+  state::Epoch epoch;
+  epoch.slow = state::SlowVector::Zero(layout.slow_size());
   epoch.q_n_b = attitude_of(findings);
   place_at_imu(epoch, findings.fix, findings.antenna_velocity_n, findings.omega_b);
   epoch.bias.gyro =
-      findings.gyro_b - epoch.q_n_b.conjugate() *
-                            (wgs84::earth_rate_n(findings.fix.antenna.latitude) + findings.turn_n);
+      findings.gyro_b -
+      epoch.q_n_b.conjugate() *
+          (geodesy::wgs84::earth_rate_n(findings.fix.antenna.latitude) + findings.turn_n);
   epoch.covariance =
       covariance_of(findings, epoch.q_n_b, accel_prior_sigma(findings, noise, layout), layout);
   fuse_gyro_prior(epoch, prior_sigma(noise.gyro_turn_on_sigma, noise.gyro_bias_sigma));
@@ -188,7 +192,8 @@ Epoch initial_state(const AlignmentFindings& findings, const ImuNoise& noise,
   return epoch;
 }
 
-Epoch with_given_angles(const Epoch& epoch, const Quaterniond& q_v_b, const GivenAngles& given) {
+state::Epoch with_given_angles(const state::Epoch& epoch, const Quaterniond& q_v_b,
+                               const GivenAngles& given) {
   so3::Euler euler = so3::to_euler(epoch.q_n_b * q_v_b.conjugate());
   const Matrix3d euler_by_b = so3::euler_jacobian(euler) * q_v_b.toRotationMatrix();
   const Matrix3d b_by_euler = euler_by_b.inverse();
@@ -204,41 +209,42 @@ Epoch with_given_angles(const Epoch& epoch, const Quaterniond& q_v_b, const Give
   replace(given.heading, euler.heading, 2);
   if (keep == Vector3d::Ones()) return epoch;
 
-  Epoch result = epoch;
+  state::Epoch result = epoch;
   result.q_n_b = so3::from_euler(euler) * q_v_b;
-  NodeMatrix T = NodeMatrix::Identity();
-  part(T, attitude, attitude) = b_by_euler * keep.asDiagonal() * euler_by_b;
-  node_part(result.covariance) = T * node_part(epoch.covariance) * T.transpose();
-  node_by_slow(result.covariance) = T * node_by_slow(epoch.covariance);
-  slow_by_node(result.covariance) = node_by_slow(result.covariance).transpose();
-  part(result.covariance, attitude, attitude) +=
+  state::NodeMatrix T = state::NodeMatrix::Identity();
+  state::part(T, attitude, attitude) = b_by_euler * keep.asDiagonal() * euler_by_b;
+  state::node_part(result.covariance) = T * state::node_part(epoch.covariance) * T.transpose();
+  state::node_by_slow(result.covariance) = T * state::node_by_slow(epoch.covariance);
+  state::slow_by_node(result.covariance) = state::node_by_slow(result.covariance).transpose();
+  state::part(result.covariance, attitude, attitude) +=
       b_by_euler * variance.asDiagonal() * b_by_euler.transpose();
   return result;
 }
 
-Epoch given_state(const GnssFix& fix, const Vector3d& antenna_velocity_n,
-                  const Matrix3d& velocity_covariance, const Vector3d& omega_b,
-                  const Quaterniond& q_v_b, const GivenAngles& given, const ImuNoise& noise) {
+state::Epoch given_state(const GnssFix& fix, const Vector3d& antenna_velocity_n,
+                         const Matrix3d& velocity_covariance, const Vector3d& omega_b,
+                         const Quaterniond& q_v_b, const GivenAngles& given,
+                         const imu::ImuNoise& noise) {
   const so3::Euler euler{given.roll->value, given.pitch->value, given.heading->value};
   const Vector3d variance(given.roll->sigma * given.roll->sigma,
                           given.pitch->sigma * given.pitch->sigma,
                           given.heading->sigma * given.heading->sigma);
-  Epoch epoch;
+  state::Epoch epoch;
   epoch.q_n_b = so3::from_euler(euler) * q_v_b;
   place_at_imu(epoch, fix, antenna_velocity_n, omega_b);
   const Matrix3d b_by_euler = (so3::euler_jacobian(euler) * q_v_b.toRotationMatrix()).inverse();
   const double gyro_sigma = prior_sigma(noise.gyro_turn_on_sigma, noise.gyro_bias_sigma);
   const double accel_sigma = prior_sigma(noise.accel_turn_on_sigma, noise.accel_bias_sigma);
-  NodeMatrix J = NodeMatrix::Identity();
+  state::NodeMatrix J = state::NodeMatrix::Identity();
   const Matrix3d R = epoch.q_n_b.toRotationMatrix();
-  part(J, position, attitude) = R * so3::skew(fix.p_b_a);
-  part(J, velocity, attitude) = R * so3::skew(omega_b.cross(fix.p_b_a));
-  NodeMatrix S = NodeMatrix::Zero();
-  part(S, position, position) = fix.position_covariance;
-  part(S, velocity, velocity) = velocity_covariance;
-  part(S, attitude, attitude) = b_by_euler * variance.asDiagonal() * b_by_euler.transpose();
-  part(S, gyro_bias, gyro_bias) = gyro_sigma * gyro_sigma * Matrix3d::Identity();
-  part(S, accel_bias, accel_bias) = accel_sigma * accel_sigma * Matrix3d::Identity();
+  state::part(J, position, attitude) = R * so3::skew(fix.p_b_a);
+  state::part(J, velocity, attitude) = R * so3::skew(omega_b.cross(fix.p_b_a));
+  state::NodeMatrix S = state::NodeMatrix::Zero();
+  state::part(S, position, position) = fix.position_covariance;
+  state::part(S, velocity, velocity) = velocity_covariance;
+  state::part(S, attitude, attitude) = b_by_euler * variance.asDiagonal() * b_by_euler.transpose();
+  state::part(S, gyro_bias, gyro_bias) = gyro_sigma * gyro_sigma * Matrix3d::Identity();
+  state::part(S, accel_bias, accel_bias) = accel_sigma * accel_sigma * Matrix3d::Identity();
   epoch.covariance = J * S * J.transpose();
   return epoch;
 }

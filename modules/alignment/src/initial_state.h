@@ -49,8 +49,8 @@ Eigen::Quaterniond attitude_of(const AlignmentFindings& findings);
 /// and then the priors of the biases; the length of f tells the accelerometer's bias along it.
 /// Scale factors of the accelerometers, if `layout` has them, share in level and length of f: what
 /// the length tells is bias and scale together.
-Epoch initial_state(const AlignmentFindings& findings, const ImuNoise& noise,
-                    const Layout& layout = {});
+state::Epoch initial_state(const AlignmentFindings& findings, const imu::ImuNoise& noise,
+                           const state::Layout& layout = {});
 
 /// A given angle in the place of the one found.
 struct GivenAngle {
@@ -62,13 +62,14 @@ struct GivenAngles {
 };
 
 /// Replaces the angles of the vehicle by given ones; their errors are independent of all else.
-Epoch with_given_angles(const Epoch& epoch, const Eigen::Quaterniond& q_v_b,
-                        const GivenAngles& given);
+state::Epoch with_given_angles(const state::Epoch& epoch, const Eigen::Quaterniond& q_v_b,
+                               const GivenAngles& given);
 
 /// State from three given angles; biases zero with their priors.
 /// velocity_covariance [m^2/s^2].
-Epoch given_state(const GnssFix& fix, const Eigen::Vector3d& antenna_velocity_n,
-                  const Eigen::Matrix3d& velocity_covariance, const Eigen::Vector3d& omega_b,
-                  const Eigen::Quaterniond& q_v_b, const GivenAngles& given, const ImuNoise& noise);
+state::Epoch given_state(const GnssFix& fix, const Eigen::Vector3d& antenna_velocity_n,
+                         const Eigen::Matrix3d& velocity_covariance, const Eigen::Vector3d& omega_b,
+                         const Eigen::Quaterniond& q_v_b, const GivenAngles& given,
+                         const imu::ImuNoise& noise);
 
 }  // namespace foucault::alignment

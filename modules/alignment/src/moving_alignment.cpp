@@ -91,19 +91,19 @@ struct MotionFilter {
   Vector3d component(int i) const { return {axes[0].x[i], axes[1].x[i], axes[2].x[i]}; }
 
   void add(const GnssFix& fix, const Vector3d& position, double dt) {
-    const double course = azimuth(component(1));
+    const double course = geodesy::azimuth(component(1));
     for (int axis = 0; axis < 3; ++axis) {
       axes[axis].predict(dt);
       axes[axis].update(0, position[axis], fix.position_covariance(axis, axis));
     }
     use_velocity(fix);
     if (++fixes < 2) return;  // the first course is arbitrary
-    const double turned = so3::wrap(azimuth(component(1)) - course);
+    const double turned = so3::wrap(geodesy::azimuth(component(1)) - course);
     fastest_turn = std::max(fastest_turn, std::abs(turned) / std::max(dt, kSteadyTurn));
   }
 
   void use_velocity(const GnssFix& fix) {
-    const bool coarse = horizontal_sigma(fix.position_covariance) > kPreciseSigma;
+    const bool coarse = geodesy::horizontal_sigma(fix.position_covariance) > geodesy::kPreciseSigma;
     if (!coarse || !fix.velocity_n) return;
     for (int axis = 0; axis < 3; ++axis) {
       axes[axis].update(1, (*fix.velocity_n)[axis], fix.velocity_covariance(axis, axis));
@@ -126,7 +126,7 @@ Vector3d mean_rate(const std::deque<ImuIncrement>& increments, int64_t begin_ns)
 
 MotionFit fit_motion(std::deque<GnssFix>::const_iterator first,
                      std::deque<GnssFix>::const_iterator last) {
-  const LocalFrame frame(first->antenna);
+  const geodesy::LocalFrame frame(first->antenna);
   MotionFilter filter(*first);
   for (auto fix = std::next(first); fix != last; ++fix) {
     filter.add(*fix, frame.to_local(fix->antenna),
@@ -158,7 +158,7 @@ MotionFit fit_motion(std::deque<GnssFix>::const_iterator first,
 
 MovingAlignment::MovingAlignment(const CourseLimits& limits,
                                  const std::optional<GivenAngle>& given_heading,
-                                 const Quaterniond& q_v_b, const ImuNoise& noise)
+                                 const Quaterniond& q_v_b, const imu::ImuNoise& noise)
     : limits_(limits), given_heading_(given_heading), q_v_b_(q_v_b), noise_(noise) {}
 
 void MovingAlignment::restart() {
@@ -223,7 +223,8 @@ bool MovingAlignment::straight_and_fast(const MotionFit& fit) const {
   if (given_heading_) return true;
   const double slowest =
       std::min(fit.velocity_n.head<2>().norm(), fit.begin_velocity_n.head<2>().norm());
-  const double turned = so3::wrap(azimuth(fit.velocity_n) - azimuth(fit.begin_velocity_n));
+  const double turned =
+      so3::wrap(geodesy::azimuth(fit.velocity_n) - geodesy::azimuth(fit.begin_velocity_n));
   return slowest >= limits_.min_speed && std::abs(turned) <= limits_.max_turn_rate * fit.duration;
 }
 
@@ -236,7 +237,8 @@ void MovingAlignment::find_gyro(const MotionFit& fit, int64_t begin_ns,
   double turn_rate = 0;
   double course_variance = kLevelChange * kLevelChange;
   if (!given_heading_) {
-    turn_rate = so3::wrap(azimuth(fit.velocity_n) - azimuth(fit.begin_velocity_n)) / T;
+    turn_rate =
+        so3::wrap(geodesy::azimuth(fit.velocity_n) - geodesy::azimuth(fit.begin_velocity_n)) / T;
     const double speed = fit.velocity_n.head<2>().norm();
     course_variance = 2 * fit.covariance.topLeftCorner<2, 2>().trace() / (speed * speed) +
                       kLevelChange * kLevelChange;
@@ -289,7 +291,7 @@ void MovingAlignment::find_attitude(const MotionFit& fit, AlignmentFindings& fin
   const double turn_rate = findings.turn_n.z();
   Vector3d velocity_n = fit.velocity_n;
   for (int round = 0; round < 3; ++round) {
-    findings.heading = azimuth(velocity_n);
+    findings.heading = geodesy::azimuth(velocity_n);
     const Vector3d swing_n = attitude_of(findings) * findings.omega_b.cross(findings.fix.p_b_a);
     velocity_n = fit.velocity_n - swing_n;
   }

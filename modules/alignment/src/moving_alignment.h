@@ -33,7 +33,7 @@ MotionFit fit_motion(std::deque<GnssFix>::const_iterator first,
 class MovingAlignment {
  public:
   MovingAlignment(const CourseLimits& limits, const std::optional<GivenAngle>& given_heading,
-                  const Eigen::Quaterniond& q_v_b, const ImuNoise& noise);
+                  const Eigen::Quaterniond& q_v_b, const imu::ImuNoise& noise);
 
   void add(const ImuIncrement& increment);
   std::optional<AlignmentFindings> add(const GnssFix& fix);
@@ -55,7 +55,7 @@ class MovingAlignment {
   CourseLimits limits_;
   std::optional<GivenAngle> given_heading_;
   Eigen::Quaterniond q_v_b_;
-  ImuNoise noise_;
+  imu::ImuNoise noise_;
   std::deque<GnssFix> fixes_;
   std::deque<ImuIncrement> increments_;
   double fastest_ = 0;

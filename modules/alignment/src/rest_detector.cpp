@@ -53,13 +53,14 @@ void RestDetector::add(const GnssFix& fix) {
 bool RestDetector::moved(const GnssFix& fix) const {
   if (fix.velocity_n && fix.velocity_covariance.allFinite()) {
     const double speed = fix.velocity_n->head<2>().norm();
-    if (speed > 3 * horizontal_sigma(fix.velocity_covariance) + kStandingSpeed) return true;
+    if (speed > 3 * geodesy::horizontal_sigma(fix.velocity_covariance) + kStandingSpeed)
+      return true;
   }
   if (fixes_.empty()) return false;
   const GnssFix& first = fixes_.front();
-  const Eigen::Vector3d way = LocalFrame(first.antenna).to_local(fix.antenna);
-  const double sigma = std::hypot(horizontal_sigma(fix.position_covariance),
-                                  horizontal_sigma(first.position_covariance));
+  const Eigen::Vector3d way = geodesy::LocalFrame(first.antenna).to_local(fix.antenna);
+  const double sigma = std::hypot(geodesy::horizontal_sigma(fix.position_covariance),
+                                  geodesy::horizontal_sigma(first.position_covariance));
   return way.head<2>().norm() > 4 * sigma + kStandingDistance;
 }
 

@@ -11,7 +11,7 @@
 namespace foucault::alignment {
 namespace {
 
-using namespace block;
+using namespace state::block;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 using testing::Drive;
@@ -20,8 +20,8 @@ using testing::rest_and_drive;
 using testing::Sensors;
 using testing::Truth;
 
-ImuNoise noise_of(const Sensors& sensors, double gyro_turn_on, double accel_turn_on) {
-  ImuNoise noise;
+imu::ImuNoise noise_of(const Sensors& sensors, double gyro_turn_on, double accel_turn_on) {
+  imu::ImuNoise noise;
   noise.gyro_noise_density = sensors.gyro_density;
   noise.accel_noise_density = sensors.accel_density;
   noise.gyro_turn_on_sigma = gyro_turn_on;
@@ -32,15 +32,15 @@ ImuNoise noise_of(const Sensors& sensors, double gyro_turn_on, double accel_turn
 }
 
 struct Outcome {
-  std::optional<Epoch> initial;
+  std::optional<state::Epoch> initial;
   int64_t known_at_ns = 0;
   std::string why_not;
 };
 
-Outcome align(const DriveSimulator& simulator, const Sensors& sensors, const ImuNoise& noise,
-              const AlignmentOptions& options = {}, const Layout& layout = {},
+Outcome align(const DriveSimulator& simulator, const Sensors& sensors, const imu::ImuNoise& noise,
+              const AlignmentOptions& options = {}, const state::Layout& layout = {},
               const Vector3d& accel_scale = Vector3d::Zero()) {
-  Aligner aligner(options, noise, Mounting{sensors.q_v_b}, layout);
+  Aligner aligner(options, noise, state::Mounting{sensors.q_v_b}, layout);
   for (const Measurement& m : simulator.stream()) {
     if (const auto* fix = std::get_if<GnssFix>(&m)) aligner.add(*fix);
     if (const auto* increment = std::get_if<ImuIncrement>(&m)) {
@@ -54,22 +54,23 @@ Outcome align(const DriveSimulator& simulator, const Sensors& sensors, const Imu
 }
 
 /// Truth minus estimate by the blocks of a node.
-NodeVector error_of(const Epoch& epoch, const Truth& truth, const ImuBias& bias) {
-  NodeVector error;
-  error << LocalFrame(epoch.position).to_local(truth.position), truth.velocity_n - epoch.velocity_n,
-      so3::log(epoch.q_n_b.conjugate() * truth.q_n_b), bias.gyro - epoch.bias.gyro,
-      bias.accel - epoch.bias.accel;
+state::NodeVector error_of(const state::Epoch& epoch, const Truth& truth,
+                           const state::ImuBias& bias) {
+  state::NodeVector error;
+  error << geodesy::LocalFrame(epoch.position).to_local(truth.position),
+      truth.velocity_n - epoch.velocity_n, so3::log(epoch.q_n_b.conjugate() * truth.q_n_b),
+      bias.gyro - epoch.bias.gyro, bias.accel - epoch.bias.accel;
   return error;
 }
 
-double heading_error(const Epoch& epoch, const Truth& truth, const Quaterniond& q_v_b) {
+double heading_error(const state::Epoch& epoch, const Truth& truth, const Quaterniond& q_v_b) {
   return so3::wrap(so3::to_euler(epoch.q_n_b * q_v_b.conjugate()).heading -
                    so3::to_euler(truth.q_n_b * q_v_b.conjugate()).heading);
 }
 
-double heading_sigma(const Epoch& epoch) {
+double heading_sigma(const state::Epoch& epoch) {
   const Vector3d down_b = epoch.q_n_b.conjugate() * Vector3d::UnitZ();
-  return std::sqrt(down_b.dot(epoch.covariance_of(block::attitude) * down_b));
+  return std::sqrt(down_b.dot(epoch.covariance_of(state::block::attitude) * down_b));
 }
 
 TEST(AlignmentAtRest, WithPerfectSensorsLandsOnTheTruthAtTheFirstFix) {
@@ -78,15 +79,15 @@ TEST(AlignmentAtRest, WithPerfectSensorsLandsOnTheTruthAtTheFirstFix) {
   const DriveSimulator simulator(rest_and_drive(20, 1.1), sensors);
   const Outcome outcome = align(simulator, sensors, noise_of(sensors, 1e-4, 1e-2));
   ASSERT_TRUE(outcome.initial) << outcome.why_not;
-  const Epoch& epoch = *outcome.initial;
+  const state::Epoch& epoch = *outcome.initial;
   EXPECT_EQ(epoch.t_ns, DriveSimulator::kStart);
-  const NodeVector error = error_of(epoch, simulator.truth(epoch.t_ns), {});
-  EXPECT_LT(part(error, position).norm(), 1e-4);
-  EXPECT_LT(part(error, velocity).norm(), 1e-12);
+  const state::NodeVector error = error_of(epoch, simulator.truth(epoch.t_ns), {});
+  EXPECT_LT(state::part(error, position).norm(), 1e-4);
+  EXPECT_LT(state::part(error, velocity).norm(), 1e-12);
   // Carrying the attitude the Earth's horizontal rate counts as bias: 1e-5 rad in 20 s.
-  EXPECT_LT(part(error, block::attitude).norm(), 1e-4);
-  EXPECT_LT(part(error, gyro_bias).norm(), 1e-8);
-  EXPECT_LT(part(error, accel_bias).norm(), 1e-5);
+  EXPECT_LT(state::part(error, state::block::attitude).norm(), 1e-4);
+  EXPECT_LT(state::part(error, gyro_bias).norm(), 1e-8);
+  EXPECT_LT(state::part(error, accel_bias).norm(), 1e-5);
 }
 
 TEST(AlignmentAtRest, WorksForAnyMounting) {
@@ -98,9 +99,10 @@ TEST(AlignmentAtRest, WorksForAnyMounting) {
     const DriveSimulator simulator(rest_and_drive(10, -2.0), sensors);
     const Outcome outcome = align(simulator, sensors, noise_of(sensors, 1e-4, 1e-2));
     ASSERT_TRUE(outcome.initial) << rpy.transpose() << outcome.why_not;
-    const NodeVector error = error_of(*outcome.initial, simulator.truth(outcome.initial->t_ns), {});
-    EXPECT_LT(part(error, block::attitude).norm(), 1e-4) << rpy.transpose();
-    EXPECT_LT(part(error, position).norm(), 1e-3) << rpy.transpose();
+    const state::NodeVector error =
+        error_of(*outcome.initial, simulator.truth(outcome.initial->t_ns), {});
+    EXPECT_LT(state::part(error, state::block::attitude).norm(), 1e-4) << rpy.transpose();
+    EXPECT_LT(state::part(error, position).norm(), 1e-3) << rpy.transpose();
   }
 }
 
@@ -115,15 +117,19 @@ struct Consistency {
 
 double square(double x) { return x * x; }
 
-void add_run(Consistency& sum, const Epoch& epoch, const Truth& truth, const ImuBias& bias) {
-  const NodeVector error = error_of(epoch, truth, bias);
+void add_run(Consistency& sum, const state::Epoch& epoch, const Truth& truth,
+             const state::ImuBias& bias) {
+  const state::NodeVector error = error_of(epoch, truth, bias);
   const Eigen::Matrix3d R = epoch.q_n_b.toRotationMatrix();
-  const Vector3d attitude = R * part(error, block::attitude);
-  const Eigen::Matrix3d attitude_P = R * epoch.covariance_of(block::attitude) * R.transpose();
+  const Vector3d attitude = R * part(error, state::block::attitude);
+  const Eigen::Matrix3d attitude_P =
+      R * epoch.covariance_of(state::block::attitude) * R.transpose();
   for (int axis = 0; axis < 3; ++axis) {
     const double a = square(attitude[axis]) / attitude_P(axis, axis);
-    const double g = square(part(error, gyro_bias)[axis]) / square(epoch.sigma_of(gyro_bias)[axis]);
-    const double v = square(part(error, velocity)[axis]) / square(epoch.sigma_of(velocity)[axis]);
+    const double g =
+        square(state::part(error, gyro_bias)[axis]) / square(epoch.sigma_of(gyro_bias)[axis]);
+    const double v =
+        square(state::part(error, velocity)[axis]) / square(epoch.sigma_of(velocity)[axis]);
     sum.attitude_n[axis] += a;
     sum.gyro_bias[axis] += g;
     sum.velocity += v / 3;
@@ -195,15 +201,15 @@ TEST(AlignmentAtRest, LevelErrorAndAccelerometerBiasAreTied) {
   const Outcome outcome = align(simulator, sensors, noise_of(sensors, 1e-4, 0.015));
   ASSERT_TRUE(outcome.initial) << outcome.why_not;
   // Levelled at rest, g x dtheta = b_a across g: the difference is known far better than either.
-  const NodeMatrix& P = outcome.initial->covariance;
+  const state::NodeMatrix& P = outcome.initial->covariance;
   const double g = 9.81;
   const Vector3d up_b = outcome.initial->q_n_b.conjugate() * Vector3d(0, 0, -1);
   for (const Vector3d& axis : {Vector3d(1, 0, 0), Vector3d(0, 1, 0)}) {
-    NodeRow H = NodeRow::Zero();
-    part(H, block::attitude) = g * axis.cross(up_b);  // of up x dtheta
-    part(H, accel_bias) = axis;
+    state::NodeRow H = state::NodeRow::Zero();
+    state::part(H, state::block::attitude) = g * axis.cross(up_b);  // of up x dtheta
+    state::part(H, accel_bias) = axis;
     const double tied = std::sqrt((H * P * H.transpose())(0, 0));
-    const double bias = std::sqrt(part(P, accel_bias, accel_bias)(0, 0));
+    const double bias = std::sqrt(state::part(P, accel_bias, accel_bias)(0, 0));
     EXPECT_LT(tied, 0.05 * bias);
     EXPECT_NEAR(bias, 0.015, 0.001);
   }
@@ -214,25 +220,26 @@ TEST(AlignmentAtRest, ScaleFactorsAreNotTakenForBiases) {
   constexpr double kScale = 0.02, kSigma = 0.015;
   const Sensors sensors = industrial_sensors();
   const DriveSimulator simulator(rest_and_drive(20, 0.3), sensors);
-  const Layout layout = Layout().add(block::gyro_scale, 1e-3).add(block::accel_scale, 0.02);
+  const state::Layout layout =
+      state::Layout().add(state::block::gyro_scale, 1e-3).add(state::block::accel_scale, 0.02);
   const Outcome outcome = align(simulator, sensors, noise_of(sensors, 1e-4, kSigma), {}, layout,
                                 Vector3d::Constant(kScale));
   ASSERT_TRUE(outcome.initial) << outcome.why_not;
-  const Epoch& epoch = *outcome.initial;
-  const SlowBlock& scale = *layout.find(block::accel_scale);
+  const state::Epoch& epoch = *outcome.initial;
+  const state::SlowBlock& scale = *layout.find(state::block::accel_scale);
   const double g = 9.81;
-  StateVector sum = StateVector::Zero(layout.size());
-  part(sum, accel_bias).z() = 1;
-  part(sum, scale).z() = -g;
+  state::StateVector sum = state::StateVector::Zero(layout.size());
+  state::part(sum, accel_bias).z() = 1;
+  state::part(sum, scale).z() = -g;
   const double error =
       sensors.bias.accel.z() - epoch.bias.accel.z() - g * (kScale - epoch.slow[scale.index + 2]);
   const double tied = std::sqrt(sum.dot(epoch.covariance * sum));
   EXPECT_LT(tied, 2e-3);
   EXPECT_LT(std::abs(error), 3.3 * tied);
-  const double alone = std::sqrt(part(epoch.covariance.diagonal(), scale).z());
+  const double alone = std::sqrt(state::part(epoch.covariance.diagonal(), scale).z());
   EXPECT_LT(std::abs(kScale - epoch.slow[scale.index + 2]), 3 * alone);
   EXPECT_GT(alone, 1e-3);
-  EXPECT_NEAR(std::sqrt(part(epoch.covariance.diagonal(), layout.slow()[0])[0]), 1e-3, 1e-9);
+  EXPECT_NEAR(std::sqrt(state::part(epoch.covariance.diagonal(), layout.slow()[0])[0]), 1e-3, 1e-9);
 }
 
 Drive drive_without_rest(double heading) {
@@ -254,10 +261,11 @@ TEST(AlignmentWhileMoving, WithPerfectSensorsLandsOnTheTruth) {
   const DriveSimulator simulator(drive_without_rest(2.0), sensors);
   const Outcome outcome = align(simulator, sensors, noise_of(sensors, 1e-4, 1e-2));
   ASSERT_TRUE(outcome.initial) << outcome.why_not;
-  const NodeVector error = error_of(*outcome.initial, simulator.truth(outcome.initial->t_ns), {});
-  EXPECT_LT(part(error, position).norm(), 1e-3);
-  EXPECT_LT(part(error, velocity).norm(), 0.05);
-  EXPECT_LT(part(error, block::attitude).norm(), 0.1 * kDegree);
+  const state::NodeVector error =
+      error_of(*outcome.initial, simulator.truth(outcome.initial->t_ns), {});
+  EXPECT_LT(state::part(error, position).norm(), 1e-3);
+  EXPECT_LT(state::part(error, velocity).norm(), 0.05);
+  EXPECT_LT(state::part(error, state::block::attitude).norm(), 0.1 * kDegree);
 }
 
 TEST(AlignmentWhileMoving, ErrorsStayWithinTheirSigmas) {
@@ -320,10 +328,10 @@ TEST(Alignment, BadCourseIsNotTaken) {
     if (t < BadStart::kRest + 3 || !BadStart::in_bad_part(t)) return;
     fix.quality = FixQuality::float_rtk;
     const Vector3d drift(-0.5 * (t - BadStart::kRest - 3), 0, 0);
-    fix.antenna = LocalFrame(fix.antenna).to_geodetic(drift);
+    fix.antenna = geodesy::LocalFrame(fix.antenna).to_geodetic(drift);
   };
   const DriveSimulator simulator(BadStart::drive(), sensors);
-  const ImuNoise noise = noise_of(sensors, 100 * kDegree / 3600, 0.015);
+  const imu::ImuNoise noise = noise_of(sensors, 100 * kDegree / 3600, 0.015);
   const Outcome outcome = align(simulator, sensors, noise);
   ASSERT_TRUE(outcome.initial) << outcome.why_not;
   EXPECT_GT(seconds_between(DriveSimulator::kStart, outcome.known_at_ns),
@@ -384,13 +392,13 @@ TEST(Alignment, GivenAnglesStartAtTheFirstFix) {
   options.heading_deg = heading / kDegree + 0.5;
   const Outcome outcome = align(simulator, sensors, noise_of(sensors, 1e-4, 0.015), options);
   ASSERT_TRUE(outcome.initial) << outcome.why_not;
-  const Epoch& epoch = *outcome.initial;
+  const state::Epoch& epoch = *outcome.initial;
   EXPECT_EQ(epoch.t_ns, DriveSimulator::kStart);
   const so3::Euler euler = so3::to_euler(epoch.q_n_b);
   EXPECT_NEAR(euler.roll, 0.3 * kDegree, 1e-9);
   EXPECT_NEAR(euler.pitch, -0.2 * kDegree, 1e-9);
   EXPECT_NEAR(euler.heading, heading + 0.5 * kDegree, 1e-9);
-  const NodeVector error = error_of(epoch, simulator.truth(epoch.t_ns), sensors.bias);
+  const state::NodeVector error = error_of(epoch, simulator.truth(epoch.t_ns), sensors.bias);
   for (int i = 0; i < 15; ++i) {
     EXPECT_LT(std::abs(error[i]), 3.5 * std::sqrt(epoch.covariance(i, i)) + 1e-9) << i;
   }
@@ -402,7 +410,7 @@ TEST(Alignment, GivenModeNamesMissingAngles) {
   options.mode = "given";
   options.heading_deg = 10;
   try {
-    Aligner(options, imu_preset("ADIS16465"), Mounting{});
+    Aligner(options, imu::imu_preset("ADIS16465"), state::Mounting{});
     FAIL() << "accepted";
   } catch (const UsageError& error) {
     EXPECT_NE(std::string(error.what()).find("roll_deg, pitch_deg"), std::string::npos);
@@ -419,9 +427,9 @@ TEST(Alignment, HeadingAloneCompletesARest) {
   options.heading_sigma_deg = 2;
   const Outcome outcome = align(simulator, sensors, noise_of(sensors, 1e-4, 0.015), options);
   ASSERT_TRUE(outcome.initial) << outcome.why_not;
-  const NodeVector error =
+  const state::NodeVector error =
       error_of(*outcome.initial, simulator.truth(outcome.initial->t_ns), sensors.bias);
-  EXPECT_LT(part(error, block::attitude).norm(), 0.02 * kDegree);
+  EXPECT_LT(state::part(error, state::block::attitude).norm(), 0.02 * kDegree);
   EXPECT_NEAR(heading_sigma(*outcome.initial), 2 * kDegree, 1e-3 * kDegree);
 }
 
@@ -472,7 +480,7 @@ std::vector<Measurement> on_its_side(double until_s, double duration_s) {
 
 TEST(AlignmentWhileMoving, ARollIsNoProofOfWrongAxes) {
   const Sensors sensors;
-  Aligner aligner(AlignmentOptions(), noise_of(sensors, 1e-4, 1e-2), Mounting{});
+  Aligner aligner(AlignmentOptions(), noise_of(sensors, 1e-4, 1e-2), state::Mounting{});
   for (const Measurement& m : on_its_side(12, 40)) {
     if (const auto* fix = std::get_if<GnssFix>(&m)) aligner.add(*fix);
     if (const auto* increment = std::get_if<ImuIncrement>(&m)) aligner.add(*increment);
@@ -484,7 +492,7 @@ TEST(AlignmentWhileMoving, ARollIsNoProofOfWrongAxes) {
 TEST(AlignmentWhileMoving, AxesThatStayWrongAreRefused) {
   const Sensors sensors;
   const auto feed = [&](double duration_s) {
-    Aligner aligner(AlignmentOptions(), noise_of(sensors, 1e-4, 1e-2), Mounting{});
+    Aligner aligner(AlignmentOptions(), noise_of(sensors, 1e-4, 1e-2), state::Mounting{});
     for (const Measurement& m : on_its_side(1e9, duration_s)) {
       if (const auto* fix = std::get_if<GnssFix>(&m)) aligner.add(*fix);
       if (const auto* increment = std::get_if<ImuIncrement>(&m)) aligner.add(*increment);
@@ -525,7 +533,7 @@ TEST(Alignment, MemoryIsBoundedByTheOldestStart) {
   const DriveSimulator simulator(standing, sensors);
   AlignmentOptions options;
   options.max_rest_s = 60;
-  Aligner aligner(options, noise_of(sensors, 1e-4, 0.015), Mounting{});
+  Aligner aligner(options, noise_of(sensors, 1e-4, 0.015), state::Mounting{});
   for (const Measurement& m : simulator.stream()) {
     if (const auto* fix = std::get_if<GnssFix>(&m)) aligner.add(*fix);
     if (const auto* increment = std::get_if<ImuIncrement>(&m)) aligner.add(*increment);

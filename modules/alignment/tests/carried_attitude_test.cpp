@@ -45,11 +45,11 @@ class CarriedAttitudeTest : public ::testing::Test {
 
   double azimuth_l() const {
     const LevelAttitude& attitude = carried_.attitude();
-    return azimuth(attitude.q_l_b * attitude.forward_b);
+    return geodesy::azimuth(attitude.q_l_b * attitude.forward_b);
   }
 
-  ImuNoise noise_ = imu_preset("ADIS16465");
-  Vector3d earth_n_ = wgs84::earth_rate_n(kLatitude);
+  imu::ImuNoise noise_ = imu::imu_preset("ADIS16465");
+  Vector3d earth_n_ = geodesy::wgs84::earth_rate_n(kLatitude);
   Quaterniond q_v_b_ = so3::from_euler({0.3, -0.2, 1});
   Quaterniond q_n_b_ = so3::from_euler({0, 0, 0.7}) * q_v_b_;
   CarriedAttitude carried_{q_v_b_.conjugate() * Vector3d::UnitX()};

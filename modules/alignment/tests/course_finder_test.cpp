@@ -14,7 +14,7 @@ using Eigen::Vector3d;
 
 constexpr double kOffset = 0.8;   // heading of l's first axis
 constexpr double kCourse = -0.3;  // in w
-const LocalFrame kFrame(Geodetic{48 * kDegree, 9 * kDegree, 300});
+const geodesy::LocalFrame kFrame(Geodetic{48 * kDegree, 9 * kDegree, 300});
 
 /// A straight drive at 10 m/s.
 class CourseFinderTest : public ::testing::Test {

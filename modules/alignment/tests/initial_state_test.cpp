@@ -53,7 +53,7 @@ class InitialStateTest : public ::testing::Test {
     f.motion_covariance.bottomRightCorner<3, 3>() = (2.25e-4 + 4e-4) * Matrix3d::Identity();
     f.antenna_velocity_n = antenna_n - dv;
     const Geodetic antenna =
-        LocalFrame(true_.position).to_geodetic(true_.q_n_b * lever + draw(0.02));
+        geodesy::LocalFrame(true_.position).to_geodetic(true_.q_n_b * lever + draw(0.02));
     f.fix.antenna = antenna;
     f.fix.position_covariance = 4e-4 * Matrix3d::Identity();
 
@@ -68,12 +68,12 @@ class InitialStateTest : public ::testing::Test {
 
     const double own_sigma = course ? 0.005 : 0.02;
     const Vector3d seen_n = course ? Vector3d(f.antenna_velocity_n - swing_n) : forward_n;
-    f.heading = azimuth(seen_n) + own_sigma * normal_(rng_);
+    f.heading = geodesy::azimuth(seen_n) + own_sigma * normal_(rng_);
     f.heading_variance = own_sigma * own_sigma;
     if (course) f.heading_by_velocity = Vector3d(-seen_n.y(), seen_n.x(), 0) / seen_n.squaredNorm();
 
     f.turn_n = Vector3d(0, 0, 0.05);
-    const Vector3d rate_n = wgs84::earth_rate_n(antenna.latitude) + f.turn_n;
+    const Vector3d rate_n = geodesy::wgs84::earth_rate_n(antenna.latitude) + f.turn_n;
     f.gyro_b = true_.q_n_b.conjugate() * rate_n + true_.bias.gyro + draw(5e-4);
     f.gyro_covariance = 2.5e-7 * Matrix3d::Identity();
     return f;
@@ -83,9 +83,9 @@ class InitialStateTest : public ::testing::Test {
     double sum = 0;
     constexpr int kRuns = 400;
     for (int run = 0; run < kRuns; ++run) {
-      const Epoch epoch = initial_state(draw_findings(course), noise_);
-      const NodeVector error = boxminus(true_, epoch);
-      const NodeMatrix P = epoch.covariance;
+      const state::Epoch epoch = initial_state(draw_findings(course), noise_);
+      const state::NodeVector error = state::boxminus(true_, epoch);
+      const state::NodeMatrix P = epoch.covariance;
       sum += error.dot(P.ldlt().solve(error));
     }
     return sum / kRuns;
@@ -94,8 +94,8 @@ class InitialStateTest : public ::testing::Test {
   std::mt19937 rng_{42};
   std::normal_distribution<double> normal_;
   Quaterniond q_v_b_ = so3::from_euler({0.2, 0.1, -0.5});
-  ImuNoise noise_;
-  NavState true_;
+  imu::ImuNoise noise_;
+  state::NavState true_;
 };
 
 /// 400 chi-squares of 15 have a mean within 15 +- 0.9, 99.9 %.
@@ -110,14 +110,15 @@ TEST_F(InitialStateTest, LevelErrorFollowsFromTheBias) {
   double with = 0, without = 0;
   constexpr int kRuns = 400;
   for (int run = 0; run < kRuns; ++run) {
-    const Epoch epoch = initial_state(draw_findings(false), noise_);
-    const NodeVector error = boxminus(true_, epoch);
-    const Matrix3d P_ab = part(epoch.covariance, block::attitude, block::accel_bias);
-    const Matrix3d P_bb = epoch.covariance_of(block::accel_bias);
+    const state::Epoch epoch = initial_state(draw_findings(false), noise_);
+    const state::NodeVector error = state::boxminus(true_, epoch);
+    const Matrix3d P_ab =
+        state::part(epoch.covariance, state::block::attitude, state::block::accel_bias);
+    const Matrix3d P_bb = epoch.covariance_of(state::block::accel_bias);
     const Matrix3d gain = P_bb.ldlt().solve(P_ab.transpose()).transpose();
-    const Matrix3d left = epoch.covariance_of(block::attitude) - gain * P_ab.transpose();
-    const Vector3d a = part(error, block::attitude);
-    const Vector3d unexplained = a - gain * part(error, block::accel_bias);
+    const Matrix3d left = epoch.covariance_of(state::block::attitude) - gain * P_ab.transpose();
+    const Vector3d a = state::part(error, state::block::attitude);
+    const Vector3d unexplained = a - gain * part(error, state::block::accel_bias);
     with += unexplained.dot(left.ldlt().solve(unexplained));
     without += a.dot(left.ldlt().solve(a));
   }
@@ -129,16 +130,16 @@ TEST_F(InitialStateTest, AGyroBiasBeyondItsPriorIsBelieved) {
   AlignmentFindings f = draw_findings(false);
   const Vector3d large(0.05, 0, 0);
   f.gyro_b += large;
-  const Epoch epoch = initial_state(f, noise_);
+  const state::Epoch epoch = initial_state(f, noise_);
   EXPECT_LT((epoch.bias.gyro - true_.bias.gyro - large).norm(), 3e-3);
 }
 
 TEST_F(InitialStateTest, AnAccelerometerBiasBeyondItsPriorWidensIt) {
   AlignmentFindings f = draw_findings(false);
-  const double before = initial_state(f, noise_).sigma_of(block::accel_bias).maxCoeff();
+  const double before = initial_state(f, noise_).sigma_of(state::block::accel_bias).maxCoeff();
   f.specific_force_b *= 1.1;  // 1 m/s^2 too long
-  const Epoch epoch = initial_state(f, noise_);
-  EXPECT_GT(epoch.sigma_of(block::accel_bias).maxCoeff(), 5 * before);
+  const state::Epoch epoch = initial_state(f, noise_);
+  EXPECT_GT(epoch.sigma_of(state::block::accel_bias).maxCoeff(), 5 * before);
   EXPECT_NEAR(epoch.bias.accel.dot(f.specific_force_b.normalized()), 0.98, 0.1);
 }
 
@@ -154,28 +155,29 @@ TEST_F(InitialStateTest, GivenAnglesErrAsTheySay) {
     const GivenAngles given{GivenAngle{truth.roll + d.x(), sigma.x()},
                             GivenAngle{truth.pitch + d.y(), sigma.y()},
                             GivenAngle{truth.heading + d.z(), sigma.z()}};
-    const Epoch epoch = given_state(f.fix, f.antenna_velocity_n, 2.5e-3 * Matrix3d::Identity(),
-                                    f.omega_b, q_v_b_, given, noise_);
-    const NodeVector error = boxminus(true_, epoch);
-    const NodeMatrix P = epoch.covariance;
+    const state::Epoch epoch =
+        given_state(f.fix, f.antenna_velocity_n, 2.5e-3 * Matrix3d::Identity(), f.omega_b, q_v_b_,
+                    given, noise_);
+    const state::NodeVector error = state::boxminus(true_, epoch);
+    const state::NodeMatrix P = epoch.covariance;
     sum += error.dot(P.ldlt().solve(error));
   }
   EXPECT_NEAR(sum / kRuns, 15, 0.9);
 }
 
 TEST_F(InitialStateTest, AGivenAngleTakesThePlaceOfTheOneFound) {
-  const Epoch found = initial_state(draw_findings(false), noise_);
+  const state::Epoch found = initial_state(draw_findings(false), noise_);
   GivenAngles given;
   EXPECT_EQ(with_given_angles(found, q_v_b_, given).covariance, found.covariance);
   given.pitch = GivenAngle{0.1, 0.004};
-  const Epoch epoch = with_given_angles(found, q_v_b_, given);
+  const state::Epoch epoch = with_given_angles(found, q_v_b_, given);
   const so3::Euler before = so3::to_euler(found.q_n_b * q_v_b_.conjugate());
   const so3::Euler after = so3::to_euler(epoch.q_n_b * q_v_b_.conjugate());
   EXPECT_NEAR(after.roll, before.roll, 1e-12);
   EXPECT_NEAR(after.pitch, 0.1, 1e-12);
   EXPECT_NEAR(after.heading, before.heading, 1e-12);
   const Matrix3d by_b = so3::euler_jacobian(before) * q_v_b_.toRotationMatrix();
-  const Matrix3d of_angles = by_b * epoch.covariance_of(block::attitude) * by_b.transpose();
+  const Matrix3d of_angles = by_b * epoch.covariance_of(state::block::attitude) * by_b.transpose();
   EXPECT_NEAR(std::sqrt(of_angles(1, 1)), 0.004, 1e-9);
   EXPECT_NEAR(of_angles(0, 1), 0, 1e-12);
 }

@@ -13,7 +13,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-const LocalFrame kFrame(Geodetic{48 * kDegree, 9 * kDegree, 300});
+const geodesy::LocalFrame kFrame(Geodetic{48 * kDegree, 9 * kDegree, 300});
 const Vector3d kVelocity(10, -4, 0.2), kAcceleration(0.5, 0.8, -0.1);
 
 std::deque<GnssFix> fixes_of(double sigma, unsigned seed, bool with_velocity) {

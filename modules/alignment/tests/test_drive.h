@@ -46,7 +46,7 @@ inline Drive rest_and_drive(double rest_s, double heading, double acceleration =
 struct Sensors {
   Eigen::Quaterniond q_v_b = Eigen::Quaterniond::Identity();
   Eigen::Vector3d lever_v = Eigen::Vector3d(0.4, -0.3, -1.2);  ///< IMU to antenna, FRD [m]
-  ImuBias bias;
+  state::ImuBias bias;
   double gyro_density = 0, accel_density = 0;
   double gnss_sigma = 0.01;  ///< [m]
   bool gnss_noise = true;
@@ -160,7 +160,7 @@ class DriveSimulator {
 
   Drive drive_;
   Sensors sensors_;
-  LocalFrame frame_{Geodetic{48 * kDegree, 9 * kDegree, 300}};
+  geodesy::LocalFrame frame_{Geodetic{48 * kDegree, 9 * kDegree, 300}};
   std::mt19937 rng_;
   std::normal_distribution<double> normal_;
   std::vector<Eigen::Vector3d> positions_;  ///< of the IMU in w, a step apart

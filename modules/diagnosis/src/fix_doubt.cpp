@@ -31,14 +31,14 @@ constexpr int kMissesThatEndLine = 3;
 constexpr double kLineMemory = 10;
 constexpr double kGravity = 9.8;
 
-Vector3d velocity_variance(const Epoch& epoch) {
-  return part(epoch.covariance.diagonal(), block::velocity);
+Vector3d velocity_variance(const state::Epoch& epoch) {
+  return state::part(epoch.covariance.diagonal(), state::block::velocity);
 }
 
 /// What the state does not know of its acceleration: tilt and accelerometer bias [m/s^2].
-double acceleration_sigma(const Epoch& epoch) {
-  return std::hypot(kGravity * epoch.sigma_of(block::attitude).maxCoeff(),
-                    epoch.sigma_of(block::accel_bias).maxCoeff());
+double acceleration_sigma(const state::Epoch& epoch) {
+  return std::hypot(kGravity * epoch.sigma_of(state::block::attitude).maxCoeff(),
+                    epoch.sigma_of(state::block::accel_bias).maxCoeff());
 }
 
 /// At the same rates.
@@ -64,8 +64,8 @@ Vector3d InnovationLine::variance_at(int64_t at_ns) const {
   return offset_variance_n + dt * dt * rate_variance_n;
 }
 
-FixDoubt::FixDoubt(const GnssOptions& options, const FixJudge& judge, const Navigator& navigator,
-                   const GnssFix& fix, bool returns)
+FixDoubt::FixDoubt(const GnssOptions& options, const FixJudge& judge,
+                   const measurement::Navigator& navigator, const GnssFix& fix, bool returns)
     : options_(options),
       judge_(judge),
       start_(navigator.ahead(1)),
@@ -75,7 +75,7 @@ FixDoubt::FixDoubt(const GnssOptions& options, const FixJudge& judge, const Navi
       time_ns_(fix.t_ns),
       last_fix_ns_(fix.t_ns),
       from_ns_(fix.t_ns) {
-  const Innovation innovation = navigator.innovation(GnssPosition(fix));
+  const state::Innovation innovation = navigator.innovation(measurement::GnssPosition(fix));
   begin_innovation_n_ = innovation.value;
   begin_variance_n_ = innovation.covariance.diagonal();
   if (returns) trial_.emplace(navigator, fix, judge.level());
@@ -97,14 +97,14 @@ bool FixDoubt::add(const Measurement& measurement) {
 void FixDoubt::add_increment(const ImuIncrement& increment) {
   if (increment.t_end_ns <= time_ns_) return;
   ImuIncrement rest = increment;
-  if (rest.t_begin_ns < time_ns_) rest = split(rest, time_ns_).second;
+  if (rest.t_begin_ns < time_ns_) rest = imu::split(rest, time_ns_).second;
   if (seconds_between(time_ns_, rest.t_begin_ns) > kNoticeableHole) return settle_at_end();
   if (rest.t_begin_ns > time_ns_) rest = stretched_back(rest, time_ns_);
   while (!decided_ && !waiting_.empty() && waiting_.begin()->first <= rest.t_end_ns) {
     const GnssFix fix = waiting_.begin()->second;
     waiting_.erase(waiting_.begin());
     if (fix.t_ns > time_ns_ && fix.t_ns < rest.t_end_ns) {
-      const auto [before, after] = split(rest, fix.t_ns);
+      const auto [before, after] = imu::split(rest, fix.t_ns);
       propagate(before);
       rest = after;
     } else if (fix.t_ns > time_ns_) {
@@ -125,7 +125,7 @@ void FixDoubt::propagate(const ImuIncrement& increment) {
 }
 
 void FixDoubt::meet(const GnssFix& fix) {
-  const Innovation innovation = ahead_->innovation(GnssPosition(fix));
+  const state::Innovation innovation = ahead_->innovation(measurement::GnssPosition(fix));
   const double square = mahalanobis_squared(innovation.value, innovation.covariance);
   const double since_last = seconds_between(last_fix_ns_, fix.t_ns);
   last_fix_ns_ = fix.t_ns;
@@ -272,7 +272,8 @@ void FixDoubt::begin_line(const InnovationLine& line) {
                         when(begin_.t_ns), line.offset_n.norm()));
 }
 
-void FixDoubt::follow_line(const GnssFix& fix, const Innovation& innovation, double since_last) {
+void FixDoubt::follow_line(const GnssFix& fix, const state::Innovation& innovation,
+                           double since_last) {
   const Vector3d error_n = line_->at(fix.t_ns);
   const Vector3d left_n = innovation.value - error_n;
   const Eigen::Matrix3d variance_n = line_->variance_at(fix.t_ns).asDiagonal();
@@ -303,10 +304,10 @@ void FixDoubt::use_corrected(const Vector3d& error_n, const Eigen::Matrix3d& var
   FixDecision& decision = outcome_.fixes.back();
   decision.action = Action::use_corrected;
   decision.corrected = decision.fix;
-  decision.corrected.antenna = LocalFrame(decision.fix.antenna).to_geodetic(-error_n);
+  decision.corrected.antenna = geodesy::LocalFrame(decision.fix.antenna).to_geodetic(-error_n);
   const double times = std::max(1.0, kLineMemory / std::max(0.01, since_last));
   decision.corrected.position_covariance += times * variance_n;
-  ahead_->update(gnss_position(decision.corrected));
+  ahead_->update(measurement::gnss_position(decision.corrected));
 }
 
 void FixDoubt::miss_line() {
@@ -335,10 +336,10 @@ void FixDoubt::believe_all() {
 void FixDoubt::blame_state() {
   believe_all();
   outcome_.state_was_wrong = trial_.has_value();
-  const NodeMatrix added = looseness();
+  const state::NodeMatrix added = looseness();
   Pass best;
   if (!trial_) {
-    std::unique_ptr<Navigator> loosened = start_->ahead(1);
+    std::unique_ptr<measurement::Navigator> loosened = start_->ahead(1);
     loosened->loosen(added);
     best = drive_again(std::move(loosened));
     outcome_.loosened = added;
@@ -366,7 +367,7 @@ bool FixDoubt::Pass::believes_most() const {
   return 2 * static_cast<std::size_t>(count) >= is_true.size();
 }
 
-FixDoubt::Pass FixDoubt::drive_again(std::unique_ptr<Navigator> navigator) const {
+FixDoubt::Pass FixDoubt::drive_again(std::unique_ptr<measurement::Navigator> navigator) const {
   Pass pass;
   std::size_t driven = 0;
   for (const FixDecision& decision : outcome_.fixes) {
@@ -375,10 +376,11 @@ FixDoubt::Pass FixDoubt::drive_again(std::unique_ptr<Navigator> navigator) const
     }
     GnssFix trusted = decision.fix;
     trusted.position_covariance *= judge_.level();
-    const FixLikelihood likelihood = likelihood_of(navigator->innovation(GnssPosition(trusted)));
+    const FixLikelihood likelihood =
+        likelihood_of(navigator->innovation(measurement::GnssPosition(trusted)));
     pass.log_probability += likelihood.log_density;
     pass.is_true.push_back(likelihood.is_true);
-    if (likelihood.is_true) navigator->update(gnss_position(trusted));
+    if (likelihood.is_true) navigator->update(measurement::gnss_position(trusted));
   }
   return pass;
 }
@@ -391,8 +393,8 @@ void FixDoubt::move_state() {
       "fixes off by {:.2f} m since {} have stayed so and are believed", off, when(begin_.t_ns)));
   outcome_.state_was_wrong = true;
   if (!trial_) {
-    outcome_.loosened = NodeMatrix::Zero();
-    part(outcome_.loosened->diagonal(), block::position).setConstant(off * off);
+    outcome_.loosened = state::NodeMatrix::Zero();
+    state::part(outcome_.loosened->diagonal(), state::block::position).setConstant(off * off);
   }
   believe_all();
 }
@@ -409,19 +411,21 @@ void FixDoubt::settle_at_end() {
 
 /// As much doubt about position, velocity and attitude as the fixes show; the sigmas of biases grow
 /// to the double.
-NodeMatrix FixDoubt::looseness() const {
+state::NodeMatrix FixDoubt::looseness() const {
   constexpr double kSpeed = 3;      // [m/s]: an error of the velocity beyond is one of attitude
   constexpr double kLargest = 0.5;  // [rad]
   const InnovationLine line = line_ ? *line_ : recent_.size() > 2 ? fit() : InnovationLine{};
   const double rate = line.rate_n.norm();
   const double turn = std::min(kLargest, rate / std::max(kSpeed, begin_.velocity_n.norm()));
-  NodeMatrix added = NodeMatrix::Zero();
+  state::NodeMatrix added = state::NodeMatrix::Zero();
   auto variance = added.diagonal();
-  part(variance, block::position).setConstant(begin_innovation_n_.squaredNorm());
-  part(variance, block::velocity).setConstant(rate * rate + 0.01);
-  part(variance, block::attitude).setConstant(turn * turn);
-  part(variance, block::gyro_bias) = 3 * begin_.sigma_of(block::gyro_bias).cwiseAbs2();
-  part(variance, block::accel_bias) = 3 * begin_.sigma_of(block::accel_bias).cwiseAbs2();
+  state::part(variance, state::block::position).setConstant(begin_innovation_n_.squaredNorm());
+  state::part(variance, state::block::velocity).setConstant(rate * rate + 0.01);
+  state::part(variance, state::block::attitude).setConstant(turn * turn);
+  state::part(variance, state::block::gyro_bias) =
+      3 * begin_.sigma_of(state::block::gyro_bias).cwiseAbs2();
+  state::part(variance, state::block::accel_bias) =
+      3 * begin_.sigma_of(state::block::accel_bias).cwiseAbs2();
   return added;
 }
 

@@ -38,7 +38,7 @@ double mahalanobis_squared(const Eigen::Vector3d& value, const Eigen::Matrix3d& 
   return value.dot(Eigen::LLT<Eigen::Matrix3d>(covariance).solve(value));
 }
 
-double mahalanobis_squared(const Innovation& innovation) {
+double mahalanobis_squared(const state::Innovation& innovation) {
   return innovation.value.dot(innovation.covariance.llt().solve(innovation.value));
 }
 
@@ -71,7 +71,7 @@ bool FixJudge::passes(double square) const {
   return chi_square_tail(square / level(), dimension_) >= options_.gate_false_alarm;
 }
 
-bool FixJudge::believes(int64_t t_ns, const Innovation& innovation) {
+bool FixJudge::believes(int64_t t_ns, const state::Innovation& innovation) {
   const double square = mahalanobis_squared(innovation);
   const bool passed = passes(square);
   remember(square);

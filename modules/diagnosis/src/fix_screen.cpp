@@ -25,12 +25,12 @@ Deviation deviation(const GnssFix& fix, const GnssFix& a, const GnssFix& b) {
   const double to_a = seconds_between(a.t_ns, fix.t_ns);
   const double to_b = seconds_between(fix.t_ns, b.t_ns);
   const double share = to_a / seconds_between(a.t_ns, b.t_ns);
-  const LocalFrame frame(fix.antenna);
+  const geodesy::LocalFrame frame(fix.antenna);
   const Eigen::Vector3d on_line =
       (1 - share) * frame.to_local(a.antenna) + share * frame.to_local(b.antenna);
-  const double sigma = horizontal_sigma(fix.position_covariance) +
-                       std::abs(1 - share) * horizontal_sigma(a.position_covariance) +
-                       std::abs(share) * horizontal_sigma(b.position_covariance);
+  const double sigma = geodesy::horizontal_sigma(fix.position_covariance) +
+                       std::abs(1 - share) * geodesy::horizontal_sigma(a.position_covariance) +
+                       std::abs(share) * geodesy::horizontal_sigma(b.position_covariance);
   return {on_line.head<2>().norm(), 0.5 * kAcceleration * std::abs(to_a * to_b) + kSigmas * sigma};
 }
 

@@ -70,7 +70,7 @@ void ForceMatch::add(const ImuIncrement& increment) {
   }
   last_ns_ = increment.t_end_ns;
   if (due_ && due_->t_ns > increment.t_begin_ns && due_->t_ns < increment.t_end_ns) {
-    const auto [until, after] = split(increment, due_->t_ns);
+    const auto [until, after] = imu::split(increment, due_->t_ns);
     motion_.add(until);
     add_at(*std::exchange(due_, std::nullopt));
     motion_.add(after);
@@ -113,10 +113,11 @@ void ForceMatch::add_at(const GnssFix& fix) {
 void ForceMatch::compare(const Point& b) {
   const double h1 = seconds_between(a_->fix.t_ns, m_->fix.t_ns);
   const double h2 = seconds_between(m_->fix.t_ns, b.fix.t_ns);
-  const LocalFrame frame(m_->fix.antenna);
+  const geodesy::LocalFrame frame(m_->fix.antenna);
   const Vector3d acceleration_n = second_difference(
       frame.to_local(a_->fix.antenna), Vector3d::Zero(), frame.to_local(b.fix.antenna), h1, h2);
-  const double gravity = wgs84::normal_gravity(m_->fix.antenna.latitude, m_->fix.antenna.height);
+  const double gravity =
+      geodesy::wgs84::normal_gravity(m_->fix.antenna.latitude, m_->fix.antenna.height);
   if (acceleration_n.norm() > kGentle) return;
   const double expected = (acceleration_n - gravity * Vector3d::UnitZ()).norm();
   const double ratio =

@@ -116,7 +116,7 @@ ImuGuard::Verdict ImuGuard::look_at(const ImuIncrement& increment) {
   }
   last_end_ns_ = increment.t_end_ns;
   verdict.increment =
-      increment.t_begin_ns < before_ns ? split(increment, before_ns).second : increment;
+      increment.t_begin_ns < before_ns ? imu::split(increment, before_ns).second : increment;
 
   const double dt = increment.dt();
   add(increment.dtheta_b / dt, dt, gyro_);

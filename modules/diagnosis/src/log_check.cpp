@@ -9,10 +9,10 @@
 #include <limits>
 #include <utility>
 
-#include "foucault/diagnosis/force_match.h"
 #include "foucault/core/time.h"
 #include "foucault/core/time_mismatch.h"
 #include "foucault/diagnosis/fix_guard.h"
+#include "foucault/diagnosis/force_match.h"
 #include "foucault/diagnosis/imu_guard.h"
 #include "foucault/diagnosis/plausibility.h"
 #include "foucault/geodesy/course.h"
@@ -41,7 +41,7 @@ class Sample {
   void add(double value) {
     if (values_.size() < kRemembered) values_.push_back(value);
   }
-  double median() const { return foucault::median(values_); }
+  double median() const { return diagnosis::median(values_); }
   bool full() const { return values_.size() == kRemembered; }
   std::size_t size() const { return values_.size(); }
 
@@ -135,10 +135,11 @@ class RestWatch {
   }
 
   void add(const GnssFix& fix) {
-    const double sigma = horizontal_sigma(fix.position_covariance);
+    const double sigma = geodesy::horizontal_sigma(fix.position_covariance);
     if (!(sigma > 0)) return;
     if (last_fix_) {
-      const double way = LocalFrame(last_fix_->antenna).to_local(fix.antenna).head<2>().norm();
+      const double way =
+          geodesy::LocalFrame(last_fix_->antenna).to_local(fix.antenna).head<2>().norm();
       last_scatter_ = way / sigma / 2;  // two fixes, two axes
       pending_scatter_.push_back(last_scatter_);
     }
@@ -229,7 +230,8 @@ class AccelerationMatch {
       return;
     }
     const double dt = seconds_between(before->t_ns, fix.t_ns);
-    const double speed = LocalFrame(before->antenna).to_local(fix.antenna).head<2>().norm() / dt;
+    const double speed =
+        geodesy::LocalFrame(before->antenna).to_local(fix.antenna).head<2>().norm() / dt;
     // A change of mean speeds goes with the force about the fix between them.
     if (last_speed_) pair((speed - *last_speed_) / dt, 0.5 * (mean + last_mean_));
     last_speed_ = speed;
@@ -366,7 +368,7 @@ void judge_density(const std::string& name, const std::string& key, double measu
   }
 }
 
-void judge_noise(const LogFacts& facts, const ImuNoise& configured, Judgement& out) {
+void judge_noise(const LogFacts& facts, const imu::ImuNoise& configured, Judgement& out) {
   constexpr int64_t kEnough = 10;  // [s]
   if (facts.rest.seconds < kEnough) {
     return out.ok("IMU noise", fmt::format("{} s of rest, too little to tell", facts.rest.seconds));
@@ -466,7 +468,7 @@ void judge_turns(const LogFacts& facts, Judgement& out) {
 
 class LogChecker::Impl {
  public:
-  Impl(const ImuNoise& noise, const Mounting& mounting)
+  Impl(const imu::ImuNoise& noise, const state::Mounting& mounting)
       : configured(noise), q_v_b_(mounting.q_v_b.normalized()) {}
 
   void add(const ImuIncrement& increment) {
@@ -494,7 +496,7 @@ class LogChecker::Impl {
       ++bad_sigmas_;
       return;
     }
-    const double sigma = horizontal_sigma(fix.position_covariance);
+    const double sigma = geodesy::horizontal_sigma(fix.position_covariance);
     smallest_ = smallest_ > 0 ? std::min(smallest_, sigma) : sigma;
     largest_ = std::max(largest_, sigma);
     rest_.add(fix);
@@ -524,7 +526,7 @@ class LogChecker::Impl {
     return facts;
   }
 
-  ImuNoise configured;
+  imu::ImuNoise configured;
 
  private:
   /// Near zero on the fine grid; elsewhere on the coarse one.
@@ -549,7 +551,7 @@ class LogChecker::Impl {
   std::optional<double> lever_arm_;
 };
 
-LogChecker::LogChecker(const ImuNoise& configured, const Mounting& mounting)
+LogChecker::LogChecker(const imu::ImuNoise& configured, const state::Mounting& mounting)
     : impl_(std::make_unique<Impl>(configured, mounting)) {}
 LogChecker::~LogChecker() = default;
 
@@ -562,18 +564,18 @@ LogFacts LogChecker::facts() const { return impl_->facts(); }
 
 std::vector<Finding> LogChecker::findings() const { return judge(facts(), impl_->configured); }
 
-std::vector<Notice> LogChecker::warnings() const {
-  std::vector<Notice> warnings;
+std::vector<state::Notice> LogChecker::warnings() const {
+  std::vector<state::Notice> warnings;
   for (const Finding& finding : findings()) {
     if (finding.severity == Severity::ok) continue;
     if (finding.subject == kSamples || finding.subject == kFixes) continue;
-    warnings.push_back({facts().imu.first_ns, NoticeKind::skipped,
+    warnings.push_back({facts().imu.first_ns, state::NoticeKind::skipped,
                         fmt::format("{}: {} ({})", finding.subject, finding.text, finding.remedy)});
   }
   return warnings;
 }
 
-std::vector<Finding> judge(const LogFacts& facts, const ImuNoise& configured) {
+std::vector<Finding> judge(const LogFacts& facts, const imu::ImuNoise& configured) {
   constexpr double kImuHole = 0.1, kGnssHole = 30;  // [s]
   Judgement out;
   judge_stream(facts.imu, "IMU", kImuHole, out);

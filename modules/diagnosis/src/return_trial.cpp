@@ -33,29 +33,31 @@ double log_density_of_error(const Vector3d& value, const Matrix3d& covariance) {
 
 }  // namespace
 
-FixLikelihood likelihood_of(const Innovation& innovation) {
+FixLikelihood likelihood_of(const state::Innovation& innovation) {
   const double true_fix = log_density(innovation.value, innovation.covariance);
   const double outlier =
       kLogOutlier + log_density_of_error(innovation.value, innovation.covariance);
   return {true_fix >= outlier, std::max(true_fix, outlier)};
 }
 
-ReturnTrial::ReturnTrial(const Navigator& navigator, const GnssFix& first, double level)
+ReturnTrial::ReturnTrial(const measurement::Navigator& navigator, const GnssFix& first,
+                         double level)
     : level_(level), begin_ns_(first.t_ns), last_ns_(first.t_ns) {
   for (double scale = 1; scale <= kLargestScale; scale *= 2) add_scale(navigator, scale);
-  add_offset(navigator, navigator.innovation(GnssPosition(first)).value.squaredNorm() / 3);
+  add_offset(navigator,
+             navigator.innovation(measurement::GnssPosition(first)).value.squaredNorm() / 3);
 }
 
-void ReturnTrial::add_scale(const Navigator& navigator, double scale) {
+void ReturnTrial::add_scale(const measurement::Navigator& navigator, double scale) {
   Hypothesis& h = hypotheses_.emplace_back();
   h.navigator = navigator.ahead(scale);
   h.scale = scale;
   h.log_probability = -std::log(scale);
 }
 
-void ReturnTrial::add_offset(const Navigator& navigator, double variance) {
-  NodeMatrix added = NodeMatrix::Zero();
-  part(added.diagonal(), block::position).setConstant(variance);
+void ReturnTrial::add_offset(const measurement::Navigator& navigator, double variance) {
+  state::NodeMatrix added = state::NodeMatrix::Zero();
+  state::part(added.diagonal(), state::block::position).setConstant(variance);
   Hypothesis& h = hypotheses_.emplace_back();
   h.navigator = navigator.ahead(1);
   h.navigator->loosen(added);
@@ -75,10 +77,11 @@ void ReturnTrial::add(const GnssFix& fix) {
 }
 
 void ReturnTrial::try_fix(Hypothesis& h, const GnssFix& fix) {
-  const FixLikelihood likelihood = likelihood_of(h.navigator->innovation(GnssPosition(fix)));
+  const FixLikelihood likelihood =
+      likelihood_of(h.navigator->innovation(measurement::GnssPosition(fix)));
   h.used.push_back(likelihood.is_true);
   h.log_probability += likelihood.log_density;
-  if (likelihood.is_true) h.navigator->update(gnss_position(fix));
+  if (likelihood.is_true) h.navigator->update(measurement::gnss_position(fix));
 }
 
 bool ReturnTrial::is_over() const {

@@ -89,12 +89,13 @@ void TurnMatcher::add(const GnssFix& fix) {
     last_course_.reset();
     return;
   }
-  const Eigen::Vector3d way = LocalFrame(anchor_->antenna).to_local(fix.antenna);
+  const Eigen::Vector3d way = geodesy::LocalFrame(anchor_->antenna).to_local(fix.antenna);
   const double length = way.head<2>().norm();
-  const double sigma = horizontal_sigma(fix.position_covariance);
+  const double sigma = geodesy::horizontal_sigma(fix.position_covariance);
   const double dt = seconds_between(anchor_->t_ns, fix.t_ns);
   if (length < std::max(kShortestWay, kSigmas * sigma) || dt < kShortestCourse) return;
-  const Course course{anchor_->t_ns + (fix.t_ns - anchor_->t_ns) / 2, azimuth(way), length / dt};
+  const Course course{anchor_->t_ns + (fix.t_ns - anchor_->t_ns) / 2, geodesy::azimuth(way),
+                      length / dt};
   anchor_ = fix;
   if (course.speed < kSlowest) {
     last_course_.reset();

@@ -13,11 +13,12 @@ void EkfOptions::fields(ConfigFields& f) {
   f.replaced("use_velocity", "aids.gnss_velocity (on | off)");
 }
 
-EkfNavigator::EkfNavigator(const ImuNoise& imu, const Layout& layout, const EkfOptions& options)
+EkfNavigator::EkfNavigator(const imu::ImuNoise& imu, const state::Layout& layout,
+                           const EkfOptions& options)
     : noise_{imu, layout}, cov_interval_(options.cov_interval_s) {}
 
-void EkfNavigator::start(const Epoch& initial) {
-  const Epoch whole = with_slow_blocks(initial, noise_.layout);
+void EkfNavigator::start(const state::Epoch& initial) {
+  const state::Epoch whole = state::with_slow_blocks(initial, noise_.layout);
   state_ = whole;
   covariance_ = whole.covariance;
   R_n_b_ = state_.q_n_b.toRotationMatrix();
@@ -29,9 +30,10 @@ void EkfNavigator::start(const Epoch& initial) {
 void EkfNavigator::propagate(const ImuIncrement& increment) {
   if (integrals_.dt + increment.dt() > cov_interval_) catch_up();
   rates_.add(increment);
-  ImuIncrement clean = without_bias(increment, state_.bias);
-  if (state_.slow.size() > 0) clean = without_scale(clean, noise_.layout.imu_scale(state_.slow));
-  state_ = advance(state_, previous_, clean);
+  ImuIncrement clean = imu::without_bias(increment, state_.bias);
+  if (state_.slow.size() > 0)
+    clean = imu::without_scale(clean, noise_.layout.imu_scale(state_.slow));
+  state_ = imu::advance(state_, previous_, clean);
   const Eigen::Matrix3d R_n_b = state_.q_n_b.toRotationMatrix();
   integrals_.add(clean, R_n_b_, R_n_b, noise_.imu);
   R_n_b_ = R_n_b;
@@ -52,37 +54,37 @@ void EkfNavigator::catch_up() {
   stepped(t.phi);
 }
 
-StateMatrix EkfNavigator::covariance() const {
+state::StateMatrix EkfNavigator::covariance() const {
   if (integrals_.dt == 0) return covariance_;
   const StageTimer timer(Stage::covariance);
   return ekf::propagated(covariance_, pending());
 }
 
-Epoch EkfNavigator::epoch() const { return {state_, covariance()}; }
+state::Epoch EkfNavigator::epoch() const { return {state_, covariance()}; }
 
-Linearized EkfNavigator::linearize(const Observation& observation) const {
+state::Linearized EkfNavigator::linearize(const measurement::Observation& observation) const {
   return observation.linearize(state_, rates_.gyro_b, noise_.layout);
 }
 
-Innovation EkfNavigator::innovation(const Observation& observation) const {
-  return innovation_of(linearize(observation), covariance());
+state::Innovation EkfNavigator::innovation(const measurement::Observation& observation) const {
+  return state::innovation_of(linearize(observation), covariance());
 }
 
-void EkfNavigator::update(const ObservationPtr& observation) {
+void EkfNavigator::update(const measurement::ObservationPtr& observation) {
   catch_up();
   const StageTimer timer(Stage::update);
-  kalman_update(linearize(*observation), state_, covariance_);
+  state::kalman_update(linearize(*observation), state_, covariance_);
   R_n_b_ = state_.q_n_b.toRotationMatrix();
   covered_ = state_;
 }
 
-void EkfNavigator::loosen(const NodeMatrix& added) {
+void EkfNavigator::loosen(const state::NodeMatrix& added) {
   catch_up();
-  node_part(covariance_) += added;
+  state::node_part(covariance_) += added;
 }
 
 /// A filter, whatever this leaves beside its estimate.
-std::unique_ptr<Navigator> EkfNavigator::ahead(double scale) const {
+std::unique_ptr<measurement::Navigator> EkfNavigator::ahead(double scale) const {
   auto copy = std::make_unique<EkfNavigator>(*this);
   copy->catch_up();
   copy->covariance_ *= scale * scale;

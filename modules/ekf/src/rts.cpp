@@ -7,35 +7,35 @@ namespace {
 
 /// State and covariance from everything measured.
 struct Smoothed {
-  NavState state;
-  StateMatrix covariance;
+  state::NavState state;
+  state::StateMatrix covariance;
 };
 
 /// One step back. G = P_f phi' P_p^-1; the error found in the next node's prediction is carried to
 /// the filtered state.
 Smoothed step_back(const RtsNode& node, const RtsNode& next, const Smoothed& next_smoothed) {
-  const StateMatrix filtered = node.filtered_covariance.full();
-  const StateMatrix predicted = next.predicted_covariance.full();
-  StateMatrix carried(filtered.rows(), filtered.cols());
+  const state::StateMatrix filtered = node.filtered_covariance.full();
+  const state::StateMatrix predicted = next.predicted_covariance.full();
+  state::StateMatrix carried(filtered.rows(), filtered.cols());
   carried << next.motion * filtered,
       next.decay.asDiagonal() * filtered.bottomRows(next.decay.size());
-  const StateMatrix gain = predicted.ldlt().solve(carried).transpose();
-  const StateVector found = boxminus(next_smoothed.state, next.predicted);
-  const StateMatrix change = next_smoothed.covariance - predicted;
-  const StateMatrix covariance = filtered + gain * change * gain.transpose();
-  return {boxplus(node.filtered, gain * found), 0.5 * (covariance + covariance.transpose())};
+  const state::StateMatrix gain = predicted.ldlt().solve(carried).transpose();
+  const state::StateVector found = state::boxminus(next_smoothed.state, next.predicted);
+  const state::StateMatrix change = next_smoothed.covariance - predicted;
+  const state::StateMatrix covariance = filtered + gain * change * gain.transpose();
+  return {state::boxplus(node.filtered, gain * found), 0.5 * (covariance + covariance.transpose())};
 }
 
-SmoothedEpoch result_of(const RtsNode& node, const Smoothed& smoothed) {
-  return {smoothed.state, PackedSymmetric(smoothed.covariance),
-          node_part(boxminus(smoothed.state, node.predicted)),
-          node_part(boxminus(smoothed.state, node.filtered))};
+measurement::SmoothedEpoch result_of(const RtsNode& node, const Smoothed& smoothed) {
+  return {smoothed.state, state::PackedSymmetric(smoothed.covariance),
+          state::node_part(state::boxminus(smoothed.state, node.predicted)),
+          state::node_part(state::boxminus(smoothed.state, node.filtered))};
 }
 
 }  // namespace
 
-std::deque<SmoothedEpoch> smooth(std::deque<RtsNode> nodes) {
-  std::deque<SmoothedEpoch> results;
+std::deque<measurement::SmoothedEpoch> smooth(std::deque<RtsNode> nodes) {
+  std::deque<measurement::SmoothedEpoch> results;
   Smoothed smoothed;
   RtsNode next;
   while (!nodes.empty()) {
@@ -50,22 +50,22 @@ std::deque<SmoothedEpoch> smooth(std::deque<RtsNode> nodes) {
   return results;
 }
 
-void RtsRecorder::start(const Epoch& initial) {
+void RtsRecorder::start(const state::Epoch& initial) {
   if (!nodes_.empty()) mark();
   EkfNavigator::start(initial);
   add_node();
   nodes_.back().begins_run = true;
 }
 
-void RtsRecorder::update(const ObservationPtr& observation) {
+void RtsRecorder::update(const measurement::ObservationPtr& observation) {
   mark();
   EkfNavigator::update(observation);
   nodes_.back().filtered = state();
-  nodes_.back().filtered_covariance = PackedSymmetric(covariance());
+  nodes_.back().filtered_covariance = state::PackedSymmetric(covariance());
 }
 
 /// What is added lies between two nodes.
-void RtsRecorder::loosen(const NodeMatrix& added) {
+void RtsRecorder::loosen(const state::NodeMatrix& added) {
   EkfNavigator::loosen(added);
   add_node();
 }
@@ -87,11 +87,13 @@ void RtsRecorder::stepped(const ekf::Phi& phi) { phi_ = phi * phi_; }
 void RtsRecorder::add_node() {
   RtsNode& node = nodes_.emplace_back();
   node.predicted = node.filtered = state();
-  node.predicted_covariance = node.filtered_covariance = PackedSymmetric(covariance());
+  node.predicted_covariance = node.filtered_covariance = state::PackedSymmetric(covariance());
   node.motion = phi_.motion;
   node.decay = phi_.decay;
-  phi_.motion.setIdentity(MotionByState::RowsAtCompileTime, state_size(state().slow.size()));
-  phi_.decay = sensor_part(StateVector(StateVector::Ones(state_size(state().slow.size()))));
+  phi_.motion.setIdentity(state::MotionByState::RowsAtCompileTime,
+                          state::state_size(state().slow.size()));
+  phi_.decay = state::sensor_part(
+      state::StateVector(state::StateVector::Ones(state::state_size(state().slow.size()))));
 }
 
 }  // namespace foucault::ekf

@@ -12,21 +12,23 @@ namespace {
 constexpr double kWarmUp = 120;  ///< until the alignment is over and the filter has settled [s]
 
 /// Errors of the epochs of a run against the truth.
-class ErrorSink : public Sink {
+class ErrorSink : public state::Sink {
  public:
-  ErrorSink(const SimulatedSource& truth, int64_t start_ns) : truth_(truth), start_ns_(start_ns) {}
+  ErrorSink(const simulation::SimulatedSource& truth, int64_t start_ns)
+      : truth_(truth), start_ns_(start_ns) {}
 
-  void epoch(const Epoch& epoch) override {
+  void epoch(const state::Epoch& epoch) override {
     const double t = seconds_between(start_ns_, epoch.t_ns);
     if (t < kWarmUp) return;
     const Geodetic position = truth_.truth(epoch.t_ns).position;
-    const Eigen::Vector3d error = displacement_n(position, epoch.position, Place(position));
+    const Eigen::Vector3d error =
+        geodesy::displacement_n(position, epoch.position, geodesy::Place(position));
     const Eigen::Matrix3d covariance = epoch.covariance.topLeftCorner<3, 3>();
     errors.push_back({t, error.norm(), error.dot(covariance.llt().solve(error))});
   }
-  void fix(const FixResult& result) override {
+  void fix(const state::FixResult& result) override {
     if (seconds_between(start_ns_, result.t_ns) < kWarmUp) return;
-    if (result.verdict != FixVerdict::used) ++rejected;
+    if (result.verdict != state::FixVerdict::used) ++rejected;
     const Eigen::Vector3d& v = result.innovation_n;
     nis += v.dot(result.innovation_covariance.llt().solve(v));
     ++fixes;
@@ -52,7 +54,7 @@ class ErrorSink : public Sink {
   }
 
  private:
-  const SimulatedSource& truth_;
+  const simulation::SimulatedSource& truth_;
   int64_t start_ns_;
 };
 
@@ -66,19 +68,20 @@ class EkfRun : public ::testing::Test {
   }
 
   ErrorSink& run() {
-    source_ = std::make_unique<SimulatedSource>(scenario_, noise_);
+    source_ = std::make_unique<simulation::SimulatedSource>(scenario_, noise_);
     sink_ = std::make_unique<ErrorSink>(*source_, scenario_.start_ns());
-    Aligner aligner(AlignmentOptions{}, noise_, source_->mounting());
-    NavigationRun driver(std::make_unique<EkfNavigator>(noise_, Layout{}, EkfOptions{}),
-                         std::move(aligner), NavigationRunOptions{}, *sink_);
+    alignment::Aligner aligner(alignment::AlignmentOptions{}, noise_, source_->mounting());
+    navigation::NavigationRun driver(
+        std::make_unique<EkfNavigator>(noise_, state::Layout{}, EkfOptions{}), std::move(aligner),
+        navigation::NavigationRunOptions{}, *sink_);
     while (const std::optional<Measurement> m = source_->next()) driver.process(*m);
     driver.finish();
     return *sink_;
   }
 
-  ImuNoise noise_ = imu_preset("ADIS16465");
-  ScenarioOptions scenario_;
-  std::unique_ptr<SimulatedSource> source_;
+  imu::ImuNoise noise_ = imu::imu_preset("ADIS16465");
+  simulation::ScenarioOptions scenario_;
+  std::unique_ptr<simulation::SimulatedSource> source_;
   std::unique_ptr<ErrorSink> sink_;
 };
 

@@ -13,17 +13,17 @@
 namespace foucault::ekf {
 namespace {
 
-using Matrix = StateMatrix;
-using Vector = StateVector;
+using Matrix = state::StateMatrix;
+using Vector = state::StateVector;
 using test::kLeverArm;
 using test::Trip;
 
-constexpr int kSize = kNodeSize;
+constexpr int kSize = state::kNodeSize;
 
 using Matrix3x15 = Eigen::Matrix<double, 3, kSize>;
 
-ImuNoise adis16465() {
-  ImuNoise noise;
+imu::ImuNoise adis16465() {
+  imu::ImuNoise noise;
   noise.gyro_noise_density = 0.15 * kDegree / 60;
   noise.accel_noise_density = 0.012 / 60;
   noise.gyro_bias_sigma = 2 * kDegree / 3600;
@@ -33,9 +33,9 @@ ImuNoise adis16465() {
   return noise;
 }
 
-NodeVector initial_sigmas() {
-  const ImuNoise noise = adis16465();
-  NodeVector sigmas;
+state::NodeVector initial_sigmas() {
+  const imu::ImuNoise noise = adis16465();
+  state::NodeVector sigmas;
   sigmas << Eigen::Vector3d(0.05, 0.05, 0.05), Eigen::Vector3d(0.05, 0.05, 0.05),
       Eigen::Vector3d(0.2, 0.2, 1) * kDegree,
       Eigen::Vector3d::Constant(std::hypot(noise.gyro_turn_on_sigma, noise.gyro_bias_sigma)),
@@ -47,8 +47,8 @@ NodeVector initial_sigmas() {
 struct Fixture {
   Trip trip{{"city", 100, 2, 100}};
   std::mt19937_64 rng{7};
-  NodeMatrix prior = test::random_covariance(rng, initial_sigmas());
-  NavState state;
+  state::NodeMatrix prior = test::random_covariance(rng, initial_sigmas());
+  state::NavState state;
   GnssFix fix = trip.exact_fix(trip.begin_ns(), {0.03, 0.02, 0.05});
 
   Fixture() {
@@ -56,7 +56,7 @@ struct Fixture {
     state.bias = {{1e-3, 2e-3, -1e-3}, {0.01, 0.02, -0.01}};
   }
 
-  EkfNavigator navigator(const Layout& layout = {}) const {
+  EkfNavigator navigator(const state::Layout& layout = {}) const {
     EkfNavigator filter(adis16465(), layout, EkfOptions{});
     filter.start(test::to_epoch(state, prior));
     return filter;
@@ -68,31 +68,33 @@ struct Fixture {
     Matrix3x15 H;
     for (int i = 0; i < kSize; ++i) {
       const Vector step = 1e-3 * Vector::Unit(kSize, i);
-      H.col(i) =
-          (innovation_from(boxplus(state, -step)) - innovation_from(boxplus(state, step))) / 2e-3;
+      H.col(i) = (innovation_from(state::boxplus(state, -step)) -
+                  innovation_from(state::boxplus(state, step))) /
+                 2e-3;
     }
     return H;
   }
 
-  Eigen::Vector3d innovation_from(const NavState& from) const {
-    EkfNavigator filter(adis16465(), Layout{}, EkfOptions{});
+  Eigen::Vector3d innovation_from(const state::NavState& from) const {
+    EkfNavigator filter(adis16465(), state::Layout{}, EkfOptions{});
     filter.start(test::to_epoch(from, prior));
-    return filter.innovation(GnssPosition(fix)).value;
+    return filter.innovation(measurement::GnssPosition(fix)).value;
   }
 };
 
 /// P+ = (P^-1 + H' R^-1 H)^-1.
 template <int kRows>
-NodeMatrix information_update(const NodeMatrix& prior, const Eigen::Matrix<double, kRows, kSize>& H,
-                              const Eigen::Matrix<double, kRows, kRows>& R) {
-  const NodeMatrix information = prior.inverse() + H.transpose() * R.inverse() * H;
+state::NodeMatrix information_update(const state::NodeMatrix& prior,
+                                     const Eigen::Matrix<double, kRows, kSize>& H,
+                                     const Eigen::Matrix<double, kRows, kRows>& R) {
+  const state::NodeMatrix information = prior.inverse() + H.transpose() * R.inverse() * H;
   return information.inverse();
 }
 
 /// Largest deviation of `value` from `expected`, each element in units of the sigmas of `expected`.
-double relative_deviation(const NodeMatrix& value, const NodeMatrix& expected) {
-  const NodeVector scale = expected.diagonal().cwiseSqrt().cwiseInverse();
-  const NodeMatrix deviation = scale.asDiagonal() * (value - expected) * scale.asDiagonal();
+double relative_deviation(const state::NodeMatrix& value, const state::NodeMatrix& expected) {
+  const state::NodeVector scale = expected.diagonal().cwiseSqrt().cwiseInverse();
+  const state::NodeMatrix deviation = scale.asDiagonal() * (value - expected) * scale.asDiagonal();
   return deviation.cwiseAbs().maxCoeff();
 }
 
@@ -101,65 +103,69 @@ TEST(Ekf, InnovationCovarianceFollowsFromDifferences) {
   const Matrix3x15 H = f.numerical_H();
   const Eigen::Matrix3d expected =
       H * f.prior * H.transpose() + Eigen::Matrix3d(f.fix.position_covariance);
-  const Eigen::Matrix3d found = f.navigator().innovation(GnssPosition(f.fix)).covariance;
+  const Eigen::Matrix3d found =
+      f.navigator().innovation(measurement::GnssPosition(f.fix)).covariance;
   EXPECT_LT((found - expected).norm(), 1e-5 * expected.norm());
-  EXPECT_GT(columns_of(H, block::attitude).norm(), 0.5) << "no lever arm seen";
+  EXPECT_GT(state::columns_of(H, state::block::attitude).norm(), 0.5) << "no lever arm seen";
 }
 
 TEST(Ekf, ExactFixOnLeverArmHasNoInnovation) {
   const Fixture f;
   // The radii at the IMU and at the antenna differ by 1e-7.
-  EXPECT_LT(f.navigator().innovation(GnssPosition(f.fix)).value.norm(), 1e-6);
+  EXPECT_LT(f.navigator().innovation(measurement::GnssPosition(f.fix)).value.norm(), 1e-6);
 }
 
 TEST(Ekf, LeverArmTurnedTheWrongWayIsSeen) {
   Fixture f;
   f.fix.p_b_a = -f.fix.p_b_a;
-  EXPECT_GT(f.navigator().innovation(GnssPosition(f.fix)).value.norm(), kLeverArm.norm());
+  EXPECT_GT(f.navigator().innovation(measurement::GnssPosition(f.fix)).value.norm(),
+            kLeverArm.norm());
 }
 
 TEST(Ekf, JosephFormEqualsInformationForm) {
   const Fixture f;
   EkfNavigator filter = f.navigator();
-  filter.update(gnss_position(f.fix));  // no innovation, hence no reset
-  const NodeMatrix expected =
+  filter.update(measurement::gnss_position(f.fix));  // no innovation, hence no reset
+  const state::NodeMatrix expected =
       information_update<3>(f.prior, f.numerical_H(), Eigen::Matrix3d(f.fix.position_covariance));
   EXPECT_LT(relative_deviation(filter.epoch().covariance, expected), 1e-5);
 }
 
 TEST(Ekf, UpdateIsTheTextbookGain) {
   Fixture f;
-  f.fix.antenna = displaced(f.fix.antenna, {0.05, -0.03, 0.04}, Place(f.fix.antenna));
+  f.fix.antenna =
+      geodesy::displaced(f.fix.antenna, {0.05, -0.03, 0.04}, geodesy::Place(f.fix.antenna));
   const Matrix3x15 H = f.numerical_H();
-  const Eigen::Vector3d z = f.navigator().innovation(GnssPosition(f.fix)).value;
+  const Eigen::Vector3d z = f.navigator().innovation(measurement::GnssPosition(f.fix)).value;
   const Eigen::Matrix3d S = H * f.prior * H.transpose() + f.fix.position_covariance;
-  const NodeVector expected = f.prior * H.transpose() * S.inverse() * z;
+  const state::NodeVector expected = f.prior * H.transpose() * S.inverse() * z;
   EkfNavigator filter = f.navigator();
-  filter.update(gnss_position(f.fix));
-  const NodeVector found = boxminus(filter.state(), f.state);
-  const NodeVector sigmas = f.prior.diagonal().cwiseSqrt();
+  filter.update(measurement::gnss_position(f.fix));
+  const state::NodeVector found = state::boxminus(filter.state(), f.state);
+  const state::NodeVector sigmas = f.prior.diagonal().cwiseSqrt();
   EXPECT_LT((found - expected).cwiseQuotient(sigmas).norm(), 1e-5);
 }
 
 TEST(Ekf, AttitudeResetTurnsTheCovariance) {
   Fixture f;
   f.prior *= 400;  // 20 deg of heading: a correction that is not small
-  f.fix.antenna = displaced(f.fix.antenna, {0.5, -0.5, 0}, Place(f.fix.antenna));
+  f.fix.antenna = geodesy::displaced(f.fix.antenna, {0.5, -0.5, 0}, geodesy::Place(f.fix.antenna));
   EkfNavigator filter = f.navigator();
-  filter.update(gnss_position(f.fix));
-  const NodeVector d = boxminus(filter.state(), f.state);
-  NodeMatrix reset = NodeMatrix::Identity();
-  part(reset, block::attitude, block::attitude) = so3::right_jacobian(part(d, block::attitude));
-  const NodeMatrix before_reset =
+  filter.update(measurement::gnss_position(f.fix));
+  const state::NodeVector d = state::boxminus(filter.state(), f.state);
+  state::NodeMatrix reset = state::NodeMatrix::Identity();
+  state::part(reset, state::block::attitude, state::block::attitude) =
+      so3::right_jacobian(state::part(d, state::block::attitude));
+  const state::NodeMatrix before_reset =
       information_update<3>(f.prior, f.numerical_H(), Eigen::Matrix3d(f.fix.position_covariance));
-  const NodeMatrix expected = reset * before_reset * reset.transpose();
-  EXPECT_GT(part(d, block::attitude).norm(), 2 * kDegree);
+  const state::NodeMatrix expected = reset * before_reset * reset.transpose();
+  EXPECT_GT(state::part(d, state::block::attitude).norm(), 2 * kDegree);
   EXPECT_LT(relative_deviation(filter.epoch().covariance, expected), 1e-5);
   EXPECT_GT(relative_deviation(filter.epoch().covariance, before_reset), 1e-3);
 }
 
 /// Antenna velocity, written out from its definition.
-Eigen::Vector3d antenna_velocity(const NavState& state, const Eigen::Vector3d& gyro_b) {
+Eigen::Vector3d antenna_velocity(const state::NavState& state, const Eigen::Vector3d& gyro_b) {
   const Eigen::Vector3d omega_b = gyro_b - state.bias.gyro;
   return state.velocity_n + state.q_n_b * omega_b.cross(kLeverArm);
 }
@@ -170,26 +176,27 @@ TEST(Ekf, VelocityOfAFixActsThroughTheLeverArm) {
   ImuIncrement turning = f.trip.increments().front();
   turning.dtheta_b = Eigen::Vector3d(0.1, -0.2, 0.5) * turning.dt();
   filter.propagate(turning);
-  const NavState now = filter.state();
-  const NodeMatrix prior = filter.epoch().covariance;
+  const state::NavState now = filter.state();
+  const state::NodeMatrix prior = filter.epoch().covariance;
   const Eigen::Vector3d gyro_b = turning.dtheta_b / turning.dt();
 
   Eigen::Matrix<double, 6, kSize> H = Eigen::Matrix<double, 6, kSize>::Zero();
   for (int i = 0; i < kSize; ++i) {
     const Vector step = 1e-4 * Vector::Unit(kSize, i);
-    const NavState plus = boxplus(now, step);
-    const NavState minus = boxplus(now, -step);
-    const Place place(now.position);
-    H.col(i).head<3>() = (displacement_n(minus.position, plus.position, place) +
+    const state::NavState plus = state::boxplus(now, step);
+    const state::NavState minus = state::boxplus(now, -step);
+    const geodesy::Place place(now.position);
+    H.col(i).head<3>() = (geodesy::displacement_n(minus.position, plus.position, place) +
                           plus.q_n_b * kLeverArm - minus.q_n_b * kLeverArm) /
                          2e-4;
     H.col(i).tail<3>() = (antenna_velocity(plus, gyro_b) - antenna_velocity(minus, gyro_b)) / 2e-4;
   }
-  f.fix.antenna = displaced(now.position, now.q_n_b * kLeverArm, Place(now.position));
+  f.fix.antenna =
+      geodesy::displaced(now.position, now.q_n_b * kLeverArm, geodesy::Place(now.position));
   f.fix.velocity_n = antenna_velocity(now, gyro_b);
   f.fix.velocity_covariance = Eigen::Vector3d(1e-4, 4e-4, 9e-4).asDiagonal();
-  filter.update(gnss_position(f.fix));
-  filter.update(gnss_velocity(f.fix));
+  filter.update(measurement::gnss_position(f.fix));
+  filter.update(measurement::gnss_velocity(f.fix));
 
   Eigen::Matrix<double, 6, 6> R = Eigen::Matrix<double, 6, 6>::Zero();
   R.topLeftCorner<3, 3>() = f.fix.position_covariance;
@@ -206,7 +213,7 @@ TEST(Ekf, AskingDoesNotChangeTheResult) {
     quiet.propagate(increment);
     asked.propagate(increment);
     asked.epoch();
-    asked.innovation(GnssPosition(f.fix));
+    asked.innovation(measurement::GnssPosition(f.fix));
   }
   EXPECT_EQ(quiet.epoch().covariance, asked.epoch().covariance);
 }
@@ -216,15 +223,15 @@ TEST(Ekf, CovarianceStepHardlyMatters) {
   const auto run = [&](double cov_interval_s) {
     EkfOptions options;
     options.cov_interval_s = cov_interval_s;
-    EkfNavigator filter(adis16465(), Layout{}, options);
-    const NodeMatrix prior = initial_sigmas().cwiseAbs2().asDiagonal();
-    NavState state;
+    EkfNavigator filter(adis16465(), state::Layout{}, options);
+    const state::NodeMatrix prior = initial_sigmas().cwiseAbs2().asDiagonal();
+    state::NavState state;
     state = trip.truth(trip.begin_ns());
     filter.start(test::to_epoch(state, prior));
     for (const ImuIncrement& increment : trip.increments()) filter.propagate(increment);
     return filter.epoch().covariance;
   };
-  const NodeMatrix every_increment = run(0);
+  const state::NodeMatrix every_increment = run(0);
   EXPECT_LT(relative_deviation(run(EkfOptions{}.cov_interval_s), every_increment), 1e-3);
 }
 
@@ -238,18 +245,18 @@ struct Consistency {
   double horizontal_drift = 0;  ///< [m]
 };
 
-Consistency consistency_run(const Trip& trip, uint64_t seed, const ImuNoise& believed,
+Consistency consistency_run(const Trip& trip, uint64_t seed, const imu::ImuNoise& believed,
                             double gnss_end_s) {
   std::mt19937_64 rng{seed};
   const Eigen::Vector3d gnss_sigma(0.01, 0.01, 0.02);
-  ImuErrors errors(adis16465(), 0, static_cast<int64_t>(seed));
-  const NodeVector sigmas = initial_sigmas();
-  NavState truth;
+  simulation::ImuErrors errors(adis16465(), 0, static_cast<int64_t>(seed));
+  const state::NodeVector sigmas = initial_sigmas();
+  state::NavState truth;
   truth = trip.truth(trip.begin_ns());
-  NodeVector deviation = sigmas.cwiseProduct(test::draw15(rng));
+  state::NodeVector deviation = sigmas.cwiseProduct(test::draw15(rng));
   deviation.tail<6>().setZero();  // the true biases are drawn, the first estimate is zero
-  EkfNavigator filter(believed, Layout{}, EkfOptions{});
-  filter.start(test::to_epoch(boxplus(truth, deviation), sigmas.cwiseAbs2().asDiagonal()));
+  EkfNavigator filter(believed, state::Layout{}, EkfOptions{});
+  filter.start(test::to_epoch(state::boxplus(truth, deviation), sigmas.cwiseAbs2().asDiagonal()));
 
   Consistency result;
   const int64_t gnss_end_ns = trip.begin_ns() + nanoseconds(gnss_end_s);
@@ -259,23 +266,23 @@ Consistency consistency_run(const Trip& trip, uint64_t seed, const ImuNoise& bel
     if (now_ns > gnss_end_ns || now_ns % kNanosecondsPerSecond != 0) continue;
     GnssFix fix = trip.exact_fix(now_ns, gnss_sigma);
     const Eigen::Vector3d noise_n = gnss_sigma.cwiseProduct(test::draw3(rng));
-    fix.antenna = displaced(fix.antenna, noise_n, Place(fix.antenna));
-    const Innovation innovation = filter.innovation(GnssPosition(fix));
+    fix.antenna = geodesy::displaced(fix.antenna, noise_n, geodesy::Place(fix.antenna));
+    const state::Innovation innovation = filter.innovation(measurement::GnssPosition(fix));
     result.nis += innovation.value.dot(innovation.covariance.llt().solve(innovation.value));
     ++result.fixes;
-    filter.update(gnss_position(fix));
+    filter.update(measurement::gnss_position(fix));
     if (now_ns == gnss_end_ns) {
       truth = trip.truth(now_ns);
       truth.bias = errors.bias();
-      const NodeVector error = boxminus(truth, filter.state());
-      const NodeMatrix P = filter.epoch().covariance;
+      const state::NodeVector error = state::boxminus(truth, filter.state());
+      const state::NodeMatrix P = filter.epoch().covariance;
       result.nees = error.head<9>().dot(P.topLeftCorner<9, 9>().llt().solve(error.head<9>()));
       result.nees_bias =
           error.tail<6>().dot(P.bottomRightCorner<6, 6>().llt().solve(error.tail<6>()));
     }
   }
   truth = trip.truth(filter.state().t_ns);
-  const Eigen::Vector2d drift = boxminus(truth, filter.state()).head<2>();
+  const Eigen::Vector2d drift = state::boxminus(truth, filter.state()).head<2>();
   const Eigen::Matrix2d P = filter.epoch().covariance.topLeftCorner<2, 2>();
   result.nees_outage = drift.dot(P.llt().solve(drift));
   result.horizontal_drift = drift.norm();
@@ -283,7 +290,7 @@ Consistency consistency_run(const Trip& trip, uint64_t seed, const ImuNoise& bel
   return result;
 }
 
-Consistency mean_of_runs(const Trip& trip, int runs, const ImuNoise& believed) {
+Consistency mean_of_runs(const Trip& trip, int runs, const imu::ImuNoise& believed) {
   Consistency mean;
   for (int run = 0; run < runs; ++run) {
     const Consistency one = consistency_run(trip, 100 + run, believed, 120);
@@ -320,14 +327,14 @@ TEST_F(EkfConsistency, ErrorsAreAsLargeAsTheCovarianceSays) {
 }
 
 TEST_F(EkfConsistency, TooLittleNoiseIsSeen) {
-  ImuNoise believed = adis16465();
+  imu::ImuNoise believed = adis16465();
   believed.gyro_noise_density /= 2;
   const Consistency mean = mean_of_runs(trip_, kRuns, believed);
   EXPECT_GT(mean.nees, 9 + 2 * band(9, kRuns));
 }
 
-Layout with_scale_factors() {
-  CalibrateOptions options;
+state::Layout with_scale_factors() {
+  state::CalibrateOptions options;
   options.gyro_scale = options.accel_scale = "on";
   return options.layout();
 }
@@ -336,9 +343,9 @@ Layout with_scale_factors() {
 /// axis turns enough in a car to be seen.
 EkfNavigator filter_that_found_scale_factors(const Trip& trip, const Eigen::Vector3d& gyro_scale) {
   std::mt19937_64 rng{3};
-  ImuErrors errors(adis16465(), 0, 3);
+  simulation::ImuErrors errors(adis16465(), 0, 3);
   EkfNavigator filter(adis16465(), with_scale_factors(), EkfOptions{});
-  NavState begin;
+  state::NavState begin;
   begin = trip.truth(trip.begin_ns());
   filter.start(test::to_epoch(begin, initial_sigmas().cwiseAbs2().asDiagonal()));
   const Eigen::Vector3d gnss_sigma(0.01, 0.01, 0.02);
@@ -348,15 +355,15 @@ EkfNavigator filter_that_found_scale_factors(const Trip& trip, const Eigen::Vect
     filter.propagate(errors.apply(m));
     if (exact.t_end_ns % kNanosecondsPerSecond != 0) continue;
     GnssFix fix = trip.exact_fix(exact.t_end_ns, gnss_sigma);
-    fix.antenna =
-        displaced(fix.antenna, gnss_sigma.cwiseProduct(test::draw3(rng)), Place(fix.antenna));
-    filter.update(gnss_position(fix));
+    fix.antenna = geodesy::displaced(fix.antenna, gnss_sigma.cwiseProduct(test::draw3(rng)),
+                                     geodesy::Place(fix.antenna));
+    filter.update(measurement::gnss_position(fix));
   }
   return filter;
 }
 
 double vertical_gyro_scale_sigma(const EkfNavigator& filter) {
-  const int row = kSize + *with_scale_factors().slow_index(block::gyro_scale) + 2;
+  const int row = kSize + *with_scale_factors().slow_index(state::block::gyro_scale) + 2;
   return std::sqrt(filter.covariance()(row, row));
 }
 
@@ -366,14 +373,14 @@ TEST(Ekf, FindsScaleFactors) {
   const EkfNavigator filter = filter_that_found_scale_factors(trip, gyro_scale);
   const double sigma = vertical_gyro_scale_sigma(filter);
   EXPECT_LT(sigma, 500e-6);
-  const ImuScale found = with_scale_factors().imu_scale(filter.state().slow);
+  const state::ImuScale found = with_scale_factors().imu_scale(filter.state().slow);
   EXPECT_NEAR(found.gyro.z(), gyro_scale.z(), 3.3 * sigma);
 }
 
 TEST(Ekf, AStartKeepsSlowBlocksAndTheirCorrelations) {
   const Trip trip({"city", 60, 100, 50});
   EkfNavigator filter = filter_that_found_scale_factors(trip, {1500e-6, -1000e-6, -2000e-6});
-  const Epoch learned = filter.epoch();
+  const state::Epoch learned = filter.epoch();
   EkfNavigator other(adis16465(), with_scale_factors(), EkfOptions{});
   other.start(learned);
   EXPECT_EQ(other.epoch().slow, learned.slow);
@@ -383,21 +390,22 @@ TEST(Ekf, AStartKeepsSlowBlocksAndTheirCorrelations) {
 TEST(Ekf, OneAheadIsTheFilterWithOtherSigmas) {
   Fixture fixture;
   EkfNavigator filter = fixture.navigator();
-  const std::unique_ptr<Navigator> doubtful = filter.ahead(2);
+  const std::unique_ptr<measurement::Navigator> doubtful = filter.ahead(2);
   EXPECT_LT((doubtful->epoch().covariance - 4 * fixture.prior).norm(), 1e-12);
   for (const ImuIncrement& increment : fixture.trip.increments()) {
     filter.propagate(increment);
     doubtful->propagate(increment);
   }
-  const std::unique_ptr<Navigator> ahead = filter.ahead(1);
+  const std::unique_ptr<measurement::Navigator> ahead = filter.ahead(1);
   const GnssFix fix = fixture.trip.exact_fix(filter.epoch().t_ns, {0.03, 0.02, 0.05});
-  EXPECT_EQ(ahead->innovation(GnssPosition(fix)).value, filter.innovation(GnssPosition(fix)).value);
-  EXPECT_LT(
-      (doubtful->innovation(GnssPosition(fix)).value - filter.innovation(GnssPosition(fix)).value)
-          .norm(),
-      1e-9);
-  const Epoch before = filter.epoch();
-  ahead->update(gnss_position(fix));
+  EXPECT_EQ(ahead->innovation(measurement::GnssPosition(fix)).value,
+            filter.innovation(measurement::GnssPosition(fix)).value);
+  EXPECT_LT((doubtful->innovation(measurement::GnssPosition(fix)).value -
+             filter.innovation(measurement::GnssPosition(fix)).value)
+                .norm(),
+            1e-9);
+  const state::Epoch before = filter.epoch();
+  ahead->update(measurement::gnss_position(fix));
   EXPECT_EQ(filter.epoch().covariance, before.covariance);
 }
 
@@ -406,14 +414,15 @@ TEST(Ekf, LooseningAddsAndForgetsNothing) {
   Fixture fixture;
   EkfNavigator filter = fixture.navigator(with_scale_factors());
   for (const ImuIncrement& increment : fixture.trip.increments()) filter.propagate(increment);
-  filter.update(gnss_position(fixture.trip.exact_fix(filter.epoch().t_ns, {0.03, 0.02, 0.05})));
+  filter.update(
+      measurement::gnss_position(fixture.trip.exact_fix(filter.epoch().t_ns, {0.03, 0.02, 0.05})));
   const Matrix before = filter.covariance();
-  const NavState state = filter.state();
-  NodeMatrix added = NodeMatrix::Zero();
+  const state::NavState state = filter.state();
+  state::NodeMatrix added = state::NodeMatrix::Zero();
   added.diagonal().head<3>() = Eigen::Vector3d(1, 4, 9);
   filter.loosen(added);
   Matrix expected = before;
-  node_part(expected) += added;
+  state::node_part(expected) += added;
   EXPECT_EQ(filter.covariance(), expected);
   EXPECT_GT((before.topRightCorner<kSize, 6>().cwiseAbs().maxCoeff()), 0);
   EXPECT_EQ(filter.state().slow, state.slow);

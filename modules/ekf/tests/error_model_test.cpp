@@ -7,21 +7,21 @@
 namespace foucault::ekf {
 namespace {
 
-using Matrix = StateMatrix;
-using Vector = StateVector;
+using Matrix = state::StateMatrix;
+using Vector = state::StateVector;
 using test::Trip;
 using test::TripWindow;
 
-constexpr int kSize = kNodeSize + 6;  // with scale factors
+constexpr int kSize = state::kNodeSize + 6;  // with scale factors
 
 /// Units in which errors of a car's MEMS navigation are of order one.
 Vector natural_units() {
   Vector units(kSize);
-  part(units, block::position).setConstant(1);       // m
-  part(units, block::velocity).setConstant(0.1);     // m/s
-  part(units, block::attitude).setConstant(1e-2);    // rad
-  part(units, block::gyro_bias).setConstant(1e-3);   // rad/s
-  part(units, block::accel_bias).setConstant(1e-2);  // m/s^2
+  state::part(units, state::block::position).setConstant(1);       // m
+  state::part(units, state::block::velocity).setConstant(0.1);     // m/s
+  state::part(units, state::block::attitude).setConstant(1e-2);    // rad
+  state::part(units, state::block::gyro_bias).setConstant(1e-3);   // rad/s
+  state::part(units, state::block::accel_bias).setConstant(1e-2);  // m/s^2
   units.tail<6>().setConstant(1e-2);
   return units;
 }
@@ -31,53 +31,56 @@ Matrix in_natural_units(const Matrix& phi) {
   return units.cwiseInverse().asDiagonal() * phi * units.asDiagonal();
 }
 
-Layout with_scale_factors() {
+state::Layout with_scale_factors() {
   constexpr double kForever = 1e12;
-  return Layout().add(block::gyro_scale, 0, kForever).add(block::accel_scale, 0, kForever);
+  return state::Layout()
+      .add(state::block::gyro_scale, 0, kForever)
+      .add(state::block::accel_scale, 0, kForever);
 }
 
-ImuIncrement compensated(const ImuIncrement& increment, const NavState& state) {
-  return without_scale(without_bias(increment, state.bias),
-                       with_scale_factors().imu_scale(state.slow));
+ImuIncrement compensated(const ImuIncrement& increment, const state::NavState& state) {
+  return imu::without_scale(imu::without_bias(increment, state.bias),
+                            with_scale_factors().imu_scale(state.slow));
 }
 
 /// The mechanization alone, over all increments.
-NavState integrated(NavState state, const std::vector<ImuIncrement>& increments) {
+state::NavState integrated(state::NavState state, const std::vector<ImuIncrement>& increments) {
   ImuIncrement previous;
   for (const ImuIncrement& increment : increments) {
     const ImuIncrement clean = compensated(increment, state);
-    state = advance(state, previous, clean);
+    state = imu::advance(state, previous, clean);
     previous = clean;
   }
   return state;
 }
 
 /// Central differences of the mechanization by every error of the begin.
-Matrix numerical_transition(const NavState& begin, const std::vector<ImuIncrement>& increments) {
+Matrix numerical_transition(const state::NavState& begin,
+                            const std::vector<ImuIncrement>& increments) {
   const Vector units = natural_units();
-  const NavState end = integrated(begin, increments);
+  const state::NavState end = integrated(begin, increments);
   Matrix phi(kSize, kSize);
   for (int i = 0; i < kSize; ++i) {
     const Vector step = 1e-2 * units[i] * Vector::Unit(kSize, i);
-    const NavState plus = integrated(boxplus(begin, step), increments);
-    const NavState minus = integrated(boxplus(begin, -step), increments);
-    phi.col(i) = (boxminus(plus, end) - boxminus(minus, end)) / (2e-2 * units[i]);
+    const state::NavState plus = integrated(state::boxplus(begin, step), increments);
+    const state::NavState minus = integrated(state::boxplus(begin, -step), increments);
+    phi.col(i) = (state::boxminus(plus, end) - state::boxminus(minus, end)) / (2e-2 * units[i]);
   }
   return phi;
 }
 
 /// Product of the filter's transitions, a step for so many increments.
-Matrix analytic_transition(NavState state, const std::vector<ImuIncrement>& increments,
+Matrix analytic_transition(state::NavState state, const std::vector<ImuIncrement>& increments,
                            const ekf::ProcessNoise& noise, std::size_t increments_per_step) {
   Matrix phi = Matrix::Identity(kSize, kSize);
   ImuIncrement previous;
-  NavState begin = state;
+  state::NavState begin = state;
   ekf::MotionIntegrals integrals;
   std::size_t count = 0;
   for (const ImuIncrement& increment : increments) {
     const ImuIncrement clean = compensated(increment, state);
     const Eigen::Matrix3d R_begin = state.q_n_b.toRotationMatrix();
-    state = advance(state, previous, clean);
+    state = imu::advance(state, previous, clean);
     integrals.add(clean, R_begin, state.q_n_b.toRotationMatrix(), noise.imu);
     previous = clean;
     if (++count % increments_per_step == 0) {
@@ -98,7 +101,7 @@ ekf::ProcessNoise with_scale_and_constant_biases() {
 
 /// The dynamics compared with differences of the mechanization that they linearize.
 void expect_transition_matches(const Trip& trip, double tolerance) {
-  NavState begin = trip.truth(trip.begin_ns());
+  state::NavState begin = trip.truth(trip.begin_ns());
   begin.slow = Eigen::VectorXd::Zero(6);
   begin.bias = {{1e-3, -2e-3, 3e-3}, {0.02, -0.01, 0.03}};
   std::vector<ImuIncrement> measured = trip.increments();
@@ -132,7 +135,7 @@ TEST(ErrorModel, TransitionMatchesDifferencesInAnAirliner) {
 
 TEST(ErrorModel, ToleranceSeesCoriolisAndGravityGradient) {
   const Trip trip({"airliner", 700, 10, 100});
-  NavState begin = trip.truth(trip.begin_ns());
+  state::NavState begin = trip.truth(trip.begin_ns());
   begin.slow = Eigen::VectorXd::Zero(6);
   const Matrix phi = in_natural_units(numerical_transition(begin, trip.increments()));
   EXPECT_GT(std::abs(phi(3, 4)), 10 * kTolerance) << "Coriolis";
@@ -141,13 +144,13 @@ TEST(ErrorModel, ToleranceSeesCoriolisAndGravityGradient) {
 
 TEST(ErrorModel, BoxminusInvertsBoxplus) {
   std::mt19937_64 rng{42};
-  NavState state;
+  state::NavState state;
   state.position = {0.5, 3.14159265, 100};
   state.q_n_b = so3::exp({0.3, -1.2, 2.0});
   state.slow = Eigen::VectorXd::Zero(6);
   Vector error(kSize);
   for (int i = 0; i < kSize / 3; ++i) error.segment<3>(3 * i) = test::draw3(rng);
-  const Vector back = boxminus(boxplus(state, error), state);
+  const Vector back = state::boxminus(state::boxplus(state, error), state);
   EXPECT_LT((back - error).norm(), 1e-8);  // rounding of radians: 1 nm
 }
 
@@ -158,11 +161,11 @@ TEST(ErrorModel, MarkovProcessesAreInClosedForm) {
   noise.imu.accel_bias_sigma = 3e-2;
   const Trip trip({"static", 10, 0.5, 100});
   ekf::MotionIntegrals integrals;
-  const NavState begin = trip.truth(trip.begin_ns());
+  const state::NavState begin = trip.truth(trip.begin_ns());
   const Eigen::Matrix3d R = begin.q_n_b.toRotationMatrix();
   for (const ImuIncrement& increment : trip.increments()) integrals.add(increment, R, R, noise.imu);
   const ekf::Transition t = transition(integrals, begin, begin, noise);
-  const StateMatrix phi = t.phi.full();
+  const state::StateMatrix phi = t.phi.full();
   EXPECT_NEAR(phi(9, 9), std::exp(-0.1), 1e-15);
   EXPECT_NEAR(t.q(9, 9) / 4e-6, 1 - std::exp(-0.2), 1e-12);
   EXPECT_NEAR(t.q(14, 14) / 9e-4, 1 - std::exp(-0.2), 1e-12);
@@ -178,11 +181,11 @@ TEST(ErrorModel, TurnOnValuesDoNotDecay) {
   noise.imu.accel_turn_on_sigma = 3e-2;  // and no variation
   const Trip trip({"static", 10, 0.5, 100});
   ekf::MotionIntegrals integrals;
-  const NavState begin = trip.truth(trip.begin_ns());
+  const state::NavState begin = trip.truth(trip.begin_ns());
   const Eigen::Matrix3d R = begin.q_n_b.toRotationMatrix();
   for (const ImuIncrement& increment : trip.increments()) integrals.add(increment, R, R, noise.imu);
   const ekf::Transition t = transition(integrals, begin, begin, noise);
-  const StateMatrix phi = t.phi.full();
+  const state::StateMatrix phi = t.phi.full();
   EXPECT_NEAR(phi(9, 9), std::exp(-0.1 / 101), 1e-15);
   // The driving noise is that of the variation, but for the decay over half a second.
   EXPECT_NEAR(t.q(9, 9), 2 * 1e-6 / 5 * 0.5, 2e-10);
@@ -193,21 +196,21 @@ TEST(ErrorModel, TurnOnValuesDoNotDecay) {
 /// Errors of a filter that starts exact and gets noisy increments, against its covariance.
 struct MonteCarlo {
   int runs = 0;
-  NodeMatrix covariance = NodeMatrix::Zero();  ///< of the filter
-  NodeMatrix sampled = NodeMatrix::Zero();     ///< of the runs
+  state::NodeMatrix covariance = state::NodeMatrix::Zero();  ///< of the filter
+  state::NodeMatrix sampled = state::NodeMatrix::Zero();     ///< of the runs
 };
 
-MonteCarlo monte_carlo(const Trip& trip, const ImuNoise& noise, double extra_density,
+MonteCarlo monte_carlo(const Trip& trip, const imu::ImuNoise& noise, double extra_density,
                        int runs = 1000) {
   std::mt19937_64 rng{42};
   EkfOptions options;
   MonteCarlo result;
   result.runs = runs;
   for (int run = 0; run < result.runs; ++run) {
-    EkfNavigator navigator(noise, Layout{}, options);
-    const NavState begin = trip.truth(trip.begin_ns());
-    navigator.start(test::to_epoch(begin, NodeMatrix::Zero()));
-    NavState truth = begin;
+    EkfNavigator navigator(noise, state::Layout{}, options);
+    const state::NavState begin = trip.truth(trip.begin_ns());
+    navigator.start(test::to_epoch(begin, state::NodeMatrix::Zero()));
+    state::NavState truth = begin;
     for (const ImuIncrement& exact : trip.increments()) {
       const double dt = exact.dt();
       const double decay = std::exp(-dt / noise.bias_tau);
@@ -223,9 +226,9 @@ MonteCarlo monte_carlo(const Trip& trip, const ImuNoise& noise, double extra_den
           decay * truth.bias.accel + drive * noise.accel_bias_sigma * test::draw3(rng);
       navigator.propagate(m);
     }
-    NavState end = trip.truth(navigator.state().t_ns);
+    state::NavState end = trip.truth(navigator.state().t_ns);
     end.bias = truth.bias;
-    const NodeVector error = boxminus(end, navigator.state());
+    const state::NodeVector error = state::boxminus(end, navigator.state());
     result.sampled += error * error.transpose() / result.runs;
     if (run == 0) result.covariance = navigator.epoch().covariance;
   }
@@ -233,14 +236,14 @@ MonteCarlo monte_carlo(const Trip& trip, const ImuNoise& noise, double extra_den
 }
 
 /// L^-1 sampled L^-T with L L' = covariance: the unit matrix if the filter is right.
-NodeMatrix whitened(const MonteCarlo& mc) {
-  const Eigen::LLT<NodeMatrix> llt(mc.covariance);
-  const NodeMatrix half = llt.matrixL().solve(mc.sampled);
+state::NodeMatrix whitened(const MonteCarlo& mc) {
+  const Eigen::LLT<state::NodeMatrix> llt(mc.covariance);
+  const state::NodeMatrix half = llt.matrixL().solve(mc.sampled);
   return llt.matrixL().solve(half.transpose());
 }
 
-ImuNoise strong_noise() {
-  ImuNoise noise;
+imu::ImuNoise strong_noise() {
+  imu::ImuNoise noise;
   noise.gyro_noise_density = 2e-4;
   noise.accel_noise_density = 2e-3;
   noise.gyro_bias_sigma = 1e-3;
@@ -251,7 +254,7 @@ ImuNoise strong_noise() {
 
 TEST(ErrorModel, CovarianceMatchesMonteCarlo) {
   const MonteCarlo mc = monte_carlo(Trip({"city", 100, 4, 50}), strong_noise(), 0);
-  const NodeMatrix deviation = whitened(mc) - NodeMatrix::Identity();
+  const state::NodeMatrix deviation = whitened(mc) - state::NodeMatrix::Identity();
   // Sampling error of a variance: sqrt(2 / runs) = 4.5 %; 120 elements, 4.5 sigma.
   EXPECT_LT(deviation.cwiseAbs().maxCoeff(), 4.5 * std::sqrt(2.0 / mc.runs));
 }
@@ -259,7 +262,7 @@ TEST(ErrorModel, CovarianceMatchesMonteCarlo) {
 TEST(ErrorModel, ExtraNoiseOfAnIncrementIsCounted) {
   const Trip trip({"city", 100, 4, 50});
   const MonteCarlo mc = monte_carlo(trip, strong_noise(), 4e-4);
-  const NodeMatrix deviation = whitened(mc) - NodeMatrix::Identity();
+  const state::NodeMatrix deviation = whitened(mc) - state::NodeMatrix::Identity();
   EXPECT_LT(deviation.cwiseAbs().maxCoeff(), 4.5 * std::sqrt(2.0 / mc.runs));
 }
 
@@ -267,7 +270,7 @@ TEST(ErrorModel, MonteCarloSeesMissingNoise) {
   const Trip trip({"city", 100, 4, 50});
   MonteCarlo mc = monte_carlo(trip, strong_noise(), 4e-4);
   mc.covariance = monte_carlo(trip, strong_noise(), 0, 1).covariance;
-  EXPECT_GT((whitened(mc) - NodeMatrix::Identity()).cwiseAbs().maxCoeff(),
+  EXPECT_GT((whitened(mc) - state::NodeMatrix::Identity()).cwiseAbs().maxCoeff(),
             10 * std::sqrt(2.0 / mc.runs));
 }
 

@@ -14,20 +14,20 @@ namespace {
 
 using test::Trip;
 
-constexpr int kSize = kNodeSize;
+constexpr int kSize = state::kNodeSize;
 
 /// A linear estimation problem in the error state: x_0 ~ (0, P0), x_k+1 = phi_k x_k + w,
 /// z_k = position of x_k + noise. Attitude errors are small enough for rotations to add up.
 struct LinearProblem {
   static constexpr int kNodes = 6;
-  NodeMatrix P0;
-  std::vector<NodeMatrix> phi, Q;  ///< from node k to k + 1
+  state::NodeMatrix P0;
+  std::vector<state::NodeMatrix> phi, Q;  ///< from node k to k + 1
   std::vector<Eigen::Vector3d> z;
   Eigen::Matrix3d R = Eigen::Vector3d(0.01, 0.02, 0.04).asDiagonal();
 };
 
-NodeVector sigmas() {
-  NodeVector s;
+state::NodeVector sigmas() {
+  state::NodeVector s;
   s << Eigen::Vector3d::Constant(0.3), Eigen::Vector3d::Constant(0.2),
       Eigen::Vector3d::Constant(1e-7), Eigen::Vector3d::Constant(1e-3),
       Eigen::Vector3d::Constant(1e-2);
@@ -36,15 +36,15 @@ NodeVector sigmas() {
 
 LinearProblem random_problem() {
   std::mt19937_64 rng{11};
-  const NodeVector s = sigmas();
+  const state::NodeVector s = sigmas();
   LinearProblem p;
   p.P0 = test::random_covariance(rng, s);
   for (int k = 0; k < LinearProblem::kNodes; ++k) {
-    NodeMatrix mix;
+    state::NodeMatrix mix;
     for (int i = 0; i < 15; ++i) mix.col(i) = 0.2 * test::draw15(rng);
-    mix.bottomRows<15 - kMotionSize>() =
-        NodeMatrix(mix.diagonal().asDiagonal()).bottomRows<15 - kMotionSize>();
-    p.phi.push_back(s.asDiagonal() * (NodeMatrix::Identity() + mix) *
+    mix.bottomRows<15 - state::kMotionSize>() =
+        state::NodeMatrix(mix.diagonal().asDiagonal()).bottomRows<15 - state::kMotionSize>();
+    p.phi.push_back(s.asDiagonal() * (state::NodeMatrix::Identity() + mix) *
                     s.cwiseInverse().asDiagonal());
     p.Q.push_back(0.1 * test::random_covariance(rng, s));
     p.z.push_back(0.3 * test::draw3(rng));
@@ -52,8 +52,8 @@ LinearProblem random_problem() {
   return p;
 }
 
-NavState origin() {
-  NavState state;
+state::NavState origin() {
+  state::NavState state;
   state.position = {0.1, 0.2, 30};
   return state;
 }
@@ -61,25 +61,25 @@ NavState origin() {
 /// The filter's forward pass as nodes.
 std::deque<RtsNode> filtered(const LinearProblem& p) {
   std::deque<RtsNode> nodes;
-  NodeVector x = NodeVector::Zero();
-  NodeMatrix P = p.P0;
+  state::NodeVector x = state::NodeVector::Zero();
+  state::NodeMatrix P = p.P0;
   for (int k = 0; k < LinearProblem::kNodes; ++k) {
     RtsNode node;
     node.begins_run = k == 0;
     if (k > 0) {
       x = (p.phi[k - 1] * x).eval();
       P = (p.phi[k - 1] * P * p.phi[k - 1].transpose() + p.Q[k - 1]).eval();
-      node.motion = p.phi[k - 1].topRows<kMotionSize>();
-      node.decay = p.phi[k - 1].diagonal().tail<15 - kMotionSize>();
+      node.motion = p.phi[k - 1].topRows<state::kMotionSize>();
+      node.decay = p.phi[k - 1].diagonal().tail<15 - state::kMotionSize>();
     }
-    node.predicted = boxplus(origin(), x);
-    node.predicted_covariance = PackedSymmetric(P);
+    node.predicted = state::boxplus(origin(), x);
+    node.predicted_covariance = state::PackedSymmetric(P);
     const Eigen::Matrix<double, 15, 3> K =
         P.leftCols<3>() * (P.topLeftCorner<3, 3>() + p.R).inverse();
     x = (x + K * (p.z[k] - x.head<3>())).eval();
     P = (P - K * P.topRows<3>()).eval();
-    node.filtered = boxplus(origin(), x);
-    node.filtered_covariance = PackedSymmetric(P);
+    node.filtered = state::boxplus(origin(), x);
+    node.filtered_covariance = state::PackedSymmetric(P);
     nodes.push_back(node);
   }
   return nodes;
@@ -101,7 +101,7 @@ Batch least_squares(const LinearProblem& p) {
     right.segment<3>(15 * k) += p.R.inverse() * p.z[k];
     if (k + 1 == LinearProblem::kNodes) break;
     Eigen::Matrix<double, 15, 30> J;
-    J << -p.phi[k], NodeMatrix::Identity();
+    J << -p.phi[k], state::NodeMatrix::Identity();
     information.block<30, 30>(15 * k, 15 * k) += J.transpose() * p.Q[k].inverse() * J;
   }
   const Eigen::VectorXd scale = sigmas().replicate(LinearProblem::kNodes, 1);
@@ -112,13 +112,13 @@ Batch least_squares(const LinearProblem& p) {
 
 TEST(Rts, EqualsBatchLeastSquaresOnALinearProblem) {
   const LinearProblem p = random_problem();
-  const std::deque<SmoothedEpoch> nodes = smooth(filtered(p));
+  const std::deque<measurement::SmoothedEpoch> nodes = smooth(filtered(p));
   const Batch batch = least_squares(p);
-  const NodeVector units = sigmas().cwiseInverse();
+  const state::NodeVector units = sigmas().cwiseInverse();
   for (int k = 0; k < LinearProblem::kNodes; ++k) {
-    const NodeVector x = boxminus(nodes[k].state, origin());
-    const NodeVector dx = units.asDiagonal() * (x - batch.x.segment<15>(15 * k));
-    const NodeMatrix dP =
+    const state::NodeVector x = state::boxminus(nodes[k].state, origin());
+    const state::NodeVector dx = units.asDiagonal() * (x - batch.x.segment<15>(15 * k));
+    const state::NodeMatrix dP =
         units.asDiagonal() *
         (nodes[k].covariance.full() - batch.covariance.block<15, 15>(15 * k, 15 * k)) *
         units.asDiagonal();
@@ -131,27 +131,27 @@ TEST(Rts, EqualsBatchLeastSquaresOnALinearProblem) {
 TEST(Rts, NothingIsCarriedBackOverAStart) {
   std::deque<RtsNode> nodes = filtered(random_problem());
   nodes[3].begins_run = true;
-  const std::deque<SmoothedEpoch> alone = smooth({nodes.begin(), nodes.begin() + 3});
-  const std::deque<SmoothedEpoch> both = smooth(nodes);
+  const std::deque<measurement::SmoothedEpoch> alone = smooth({nodes.begin(), nodes.begin() + 3});
+  const std::deque<measurement::SmoothedEpoch> both = smooth(nodes);
   for (int k = 0; k < 3; ++k) {
-    EXPECT_EQ(boxminus(both[k].state, alone[k].state).norm(), 0);
+    EXPECT_EQ(state::boxminus(both[k].state, alone[k].state).norm(), 0);
     EXPECT_EQ(alone[k].covariance.full(), both[k].covariance.full());
   }
 }
 
 /// A trip through the driver: epochs of one method with the truth at their stamps.
-struct Collected : public Sink {
-  void epoch(const Epoch& e) override { epochs.push_back(e); }
-  void fix(const FixResult& f) override { fixes.push_back(f); }
-  std::vector<Epoch> epochs;
-  std::vector<FixResult> fixes;
+struct Collected : public state::Sink {
+  void epoch(const state::Epoch& e) override { epochs.push_back(e); }
+  void fix(const state::FixResult& f) override { fixes.push_back(f); }
+  std::vector<state::Epoch> epochs;
+  std::vector<state::FixResult> fixes;
 };
 
 constexpr double kOutageBegin = 200;
 constexpr double kOutageEnd = 260;
 
-ScenarioOptions trip_options(int64_t seed) {
-  ScenarioOptions options;
+simulation::ScenarioOptions trip_options(int64_t seed) {
+  simulation::ScenarioOptions options;
   options.duration_s = 320;
   options.imu_rate_hz = 100;
   options.reference_rate_hz = 0;
@@ -159,9 +159,10 @@ ScenarioOptions trip_options(int64_t seed) {
   return options;
 }
 
-AlignmentOptions given_alignment(const SimulatedSource& source, int64_t start_ns) {
+alignment::AlignmentOptions given_alignment(const simulation::SimulatedSource& source,
+                                            int64_t start_ns) {
   const so3::Euler euler = so3::to_euler(source.truth(start_ns).q_n_b);
-  AlignmentOptions options;
+  alignment::AlignmentOptions options;
   options.mode = "given";
   options.roll_deg = euler.roll / kDegree;
   options.pitch_deg = euler.pitch / kDegree;
@@ -171,7 +172,7 @@ AlignmentOptions given_alignment(const SimulatedSource& source, int64_t start_ns
 
 bool in_outage(double t) { return t > kOutageBegin && t <= kOutageEnd; }
 
-void feed(Estimator& estimator, SimulatedSource& source, int64_t start_ns) {
+void feed(state::Estimator& estimator, simulation::SimulatedSource& source, int64_t start_ns) {
   while (const std::optional<Measurement> m = source.next()) {
     const bool withheld =
         std::holds_alternative<GnssFix>(*m) && in_outage(seconds_between(start_ns, stamp(*m)));
@@ -185,54 +186,57 @@ struct BothWays {
   Collected forward, smoothed;
 };
 
-Collected run_smoother(const ScenarioOptions& scenario, const ImuNoise& noise,
-                       const NavigationRunOptions& options = {}) {
+Collected run_smoother(const simulation::ScenarioOptions& scenario, const imu::ImuNoise& noise,
+                       const navigation::NavigationRunOptions& options = {}) {
   Collected collected;
-  SimulatedSource source(scenario, noise);
-  Aligner aligner(given_alignment(source, scenario.start_ns()), noise, source.mounting());
-  const std::unique_ptr<Estimator> rts =
-      make_smoother(std::make_unique<RtsRecorder>(noise, Layout{}, EkfOptions{}),
-                    std::move(aligner), options, collected);
+  simulation::SimulatedSource source(scenario, noise);
+  alignment::Aligner aligner(given_alignment(source, scenario.start_ns()), noise,
+                             source.mounting());
+  const std::unique_ptr<state::Estimator> rts =
+      navigation::make_smoother(std::make_unique<RtsRecorder>(noise, state::Layout{}, EkfOptions{}),
+                                std::move(aligner), options, collected);
   feed(*rts, source, scenario.start_ns());
   return collected;
 }
 
-BothWays run_both_ways(const ScenarioOptions& scenario, const ImuNoise& noise) {
+BothWays run_both_ways(const simulation::ScenarioOptions& scenario, const imu::ImuNoise& noise) {
   const int64_t start_ns = scenario.start_ns();
   BothWays both;
   {
-    SimulatedSource source(scenario, noise);
-    Aligner aligner(given_alignment(source, start_ns), noise, source.mounting());
-    NavigationRun run(std::make_unique<EkfNavigator>(noise, Layout{}, EkfOptions{}),
-                      std::move(aligner), NavigationRunOptions{}, both.forward);
+    simulation::SimulatedSource source(scenario, noise);
+    alignment::Aligner aligner(given_alignment(source, start_ns), noise, source.mounting());
+    navigation::NavigationRun run(
+        std::make_unique<EkfNavigator>(noise, state::Layout{}, EkfOptions{}), std::move(aligner),
+        navigation::NavigationRunOptions{}, both.forward);
     feed(run, source, start_ns);
   }
   both.smoothed = run_smoother(scenario, noise);
   return both;
 }
 
-Eigen::Vector3d position_error(const SimulatedSource& source, const Epoch& epoch) {
+Eigen::Vector3d position_error(const simulation::SimulatedSource& source,
+                               const state::Epoch& epoch) {
   const Geodetic truth = source.truth(epoch.t_ns).position;
-  return displacement_n(truth, epoch.position, Place(truth));
+  return geodesy::displacement_n(truth, epoch.position, geodesy::Place(truth));
 }
 
 TEST(RtsSmoother, IsNeverWorseThanTheForwardRun) {
-  const ImuNoise noise = imu_preset("ADIS16465");
+  const imu::ImuNoise noise = imu::imu_preset("ADIS16465");
   double forward_worst = 0;
   double smoothed_worst = 0;
   double nees = 0;
   int epochs = 0;
   for (const int64_t seed : {1, 2, 3}) {
-    const ScenarioOptions scenario = trip_options(seed);
-    const SimulatedSource truth(scenario, noise);
+    const simulation::ScenarioOptions scenario = trip_options(seed);
+    const simulation::SimulatedSource truth(scenario, noise);
     const BothWays both = run_both_ways(scenario, noise);
     ASSERT_EQ(both.forward.epochs.size(), both.smoothed.epochs.size());
     ASSERT_EQ(both.forward.fixes.size(), both.smoothed.fixes.size());
     for (std::size_t k = 0; k < both.forward.epochs.size(); ++k) {
-      const Epoch& forward = both.forward.epochs[k];
-      const Epoch& smoothed = both.smoothed.epochs[k];
+      const state::Epoch& forward = both.forward.epochs[k];
+      const state::Epoch& smoothed = both.smoothed.epochs[k];
       ASSERT_EQ(forward.t_ns, smoothed.t_ns);
-      const NodeVector gain = forward.covariance.diagonal() - smoothed.covariance.diagonal();
+      const state::NodeVector gain = forward.covariance.diagonal() - smoothed.covariance.diagonal();
       EXPECT_GE(gain.cwiseQuotient(forward.covariance.diagonal()).minCoeff(), -1e-6);
       if (!in_outage(seconds_between(scenario.start_ns(), forward.t_ns))) continue;
       const Eigen::Vector3d error = position_error(truth, smoothed);
@@ -251,14 +255,14 @@ TEST(RtsSmoother, IsNeverWorseThanTheForwardRun) {
 }
 
 TEST(RtsSmoother, PostfitsAreOfTheSmoothedSolution) {
-  const BothWays both = run_both_ways(trip_options(4), imu_preset("ADIS16465"));
+  const BothWays both = run_both_ways(trip_options(4), imu::imu_preset("ADIS16465"));
   double innovation = 0;
   double postfit = 0;
   int count = 0;
   for (std::size_t k = 0; k < both.smoothed.fixes.size(); ++k) {
-    const FixResult& fix = both.smoothed.fixes[k];
+    const state::FixResult& fix = both.smoothed.fixes[k];
     EXPECT_EQ(fix.innovation_n, both.forward.fixes[k].innovation_n);
-    if (fix.verdict != FixVerdict::used) continue;
+    if (fix.verdict != state::FixVerdict::used) continue;
     innovation += fix.innovation_n.squaredNorm();
     postfit += fix.postfit_n.squaredNorm();
     ++count;
@@ -269,28 +273,29 @@ TEST(RtsSmoother, PostfitsAreOfTheSmoothedSolution) {
 }
 
 TEST(RtsSmoother, EpochsBetweenNodesAreInterpolated) {
-  const ImuNoise noise = imu_preset("ADIS16465");
-  NavigationRunOptions every_increment;
-  every_increment.rate = EpochRate::imu;
+  const imu::ImuNoise noise = imu::imu_preset("ADIS16465");
+  navigation::NavigationRunOptions every_increment;
+  every_increment.rate = navigation::EpochRate::imu;
   const Collected interpolated = run_smoother(trip_options(6), noise, every_increment);
-  NavigationRunOptions many_nodes;
+  navigation::NavigationRunOptions many_nodes;
   many_nodes.node_interval_s = 0.25;
   const Collected exact = run_smoother(trip_options(6), noise, many_nodes);
 
-  std::map<int64_t, Epoch> by_stamp;
-  for (const Epoch& epoch : interpolated.epochs) by_stamp[epoch.t_ns] = epoch;
+  std::map<int64_t, state::Epoch> by_stamp;
+  for (const state::Epoch& epoch : interpolated.epochs) by_stamp[epoch.t_ns] = epoch;
   EXPECT_EQ(by_stamp.size(), interpolated.epochs.size());
   int compared = 0;
-  for (const Epoch& epoch : exact.epochs) {
+  for (const state::Epoch& epoch : exact.epochs) {
     const auto found = by_stamp.find(epoch.t_ns);
     ASSERT_NE(found, by_stamp.end());
-    const Epoch& other = found->second;
-    const Place place(epoch.position);
+    const state::Epoch& other = found->second;
+    const geodesy::Place place(epoch.position);
     // Errors of some milliradians times a specific force that changes by m/s^2 within the second.
-    EXPECT_LT(displacement_n(epoch.position, other.position, place).norm(), 1e-3);
+    EXPECT_LT(geodesy::displacement_n(epoch.position, other.position, place).norm(), 1e-3);
     EXPECT_LT((epoch.velocity_n - other.velocity_n).norm(), 5e-3);
     EXPECT_LT(epoch.q_n_b.angularDistance(other.q_n_b), 1e-4);
-    const NodeVector ratio = other.covariance.diagonal().cwiseQuotient(epoch.covariance.diagonal());
+    const state::NodeVector ratio =
+        other.covariance.diagonal().cwiseQuotient(epoch.covariance.diagonal());
     EXPECT_LT((ratio.array() - 1).abs().maxCoeff(), 0.2);
     ++compared;
   }

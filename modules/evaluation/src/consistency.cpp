@@ -74,7 +74,7 @@ double CorrelatedMean::effective_samples() const {
   const double samples = static_cast<double>(samples_);
   const double blocks = static_cast<double>(blocks_.size());
   const double variance = sum_of_squares_ / samples - mean() * mean();
-  const double centre = foucault::mean(blocks_);
+  const double centre = evaluation::mean(blocks_);
   double block_variance = 0;
   for (const double block : blocks_) block_variance += (block - centre) * (block - centre) / blocks;
   if (!(block_variance > 0)) return samples;
@@ -187,13 +187,13 @@ ConsistencyCollector::ConsistencyCollector(int64_t from_ns, Callback callback)
       single_band_(mean_nees_band(kComponents, 1)),
       autocorrelation_(kLongestLag) {}
 
-void ConsistencyCollector::fix(const FixResult& fix) {
+void ConsistencyCollector::fix(const state::FixResult& fix) {
   const std::optional<Eigen::Vector3d> z = whitened(fix.innovation_n, fix.innovation_covariance);
   if (!z) return;
   NormalizedSquare square;
   square.t_ns = fix.t_ns;
   square.value = z->squaredNorm();
-  square.used = fix.verdict == FixVerdict::used;
+  square.used = fix.verdict == state::FixVerdict::used;
   if (square.used) square.running_mean = running_mean(square.value);
   add(square);
   if (!square.used || fix.t_ns < from_ns_) return;
@@ -206,7 +206,7 @@ void ConsistencyCollector::fix(const FixResult& fix) {
   }
 }
 
-void ConsistencyCollector::prediction(const PredictionResult& prediction) {
+void ConsistencyCollector::prediction(const state::PredictionResult& prediction) {
   if (prediction.t_ns < from_ns_) return;
   const std::optional<Eigen::Vector3d> z =
       whitened(prediction.innovation_n, prediction.innovation_covariance);

@@ -7,7 +7,7 @@
 
 #include "foucault/evaluation/experiment.h"
 
-namespace foucault {
+namespace foucault::evaluation {
 
 /// How many recordings, IMUs or methods there are.
 inline std::size_t count_distinct(const std::vector<ExperimentResult>& results,
@@ -17,4 +17,4 @@ inline std::size_t count_distinct(const std::vector<ExperimentResult>& results,
   return names.size();
 }
 
-}  // namespace foucault
+}  // namespace foucault::evaluation

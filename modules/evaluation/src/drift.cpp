@@ -95,16 +95,16 @@ OutageDrift outage_drift(const Outage& outage, std::vector<DriftSample> samples,
   return drift;
 }
 
-Geodetic antenna_position(const Epoch& epoch, const Eigen::Vector3d& p_b_a) {
-  return LocalFrame(epoch.position).to_geodetic(epoch.q_n_b * p_b_a);
+Geodetic antenna_position(const state::Epoch& epoch, const Eigen::Vector3d& p_b_a) {
+  return geodesy::LocalFrame(epoch.position).to_geodetic(epoch.q_n_b * p_b_a);
 }
 
-Eigen::Matrix3d antenna_covariance(const Epoch& epoch, const Eigen::Vector3d& p_b_a) {
+Eigen::Matrix3d antenna_covariance(const state::Epoch& epoch, const Eigen::Vector3d& p_b_a) {
   const Eigen::Matrix3d by_attitude = -epoch.q_n_b.toRotationMatrix() * so3::skew(p_b_a);
   const Eigen::Matrix3d crossed =
-      by_attitude * part(epoch.covariance, block::attitude, block::position);
-  return epoch.covariance_of(block::position) + crossed + crossed.transpose() +
-         by_attitude * epoch.covariance_of(block::attitude) * by_attitude.transpose();
+      by_attitude * part(epoch.covariance, state::block::attitude, state::block::position);
+  return epoch.covariance_of(state::block::position) + crossed + crossed.transpose() +
+         by_attitude * epoch.covariance_of(state::block::attitude) * by_attitude.transpose();
 }
 
 DriftCollector::DriftCollector(std::vector<double> marks_s) : marks_s_(std::move(marks_s)) {}
@@ -129,12 +129,12 @@ FixTruth::FixTruth(Callback callback) : callback_(std::move(callback)) {}
 
 void FixTruth::add(const Outage& outage, const GnssFix& fix) { waiting_.push_back({outage, fix}); }
 
-void FixTruth::epoch(const Epoch& epoch) {
+void FixTruth::epoch(const state::Epoch& epoch) {
   while (!waiting_.empty() && waiting_.front().fix.t_ns < epoch.t_ns) waiting_.pop_front();
   if (waiting_.empty() || waiting_.front().fix.t_ns != epoch.t_ns) return;
   const Truth& truth = waiting_.front();
   const Geodetic antenna = antenna_position(epoch, truth.fix.p_b_a);
-  callback_(truth.outage, truth.fix, epoch, ned_offset(truth.fix.antenna, antenna));
+  callback_(truth.outage, truth.fix, epoch, geodesy::ned_offset(truth.fix.antenna, antenna));
   waiting_.pop_front();
 }
 

@@ -14,7 +14,7 @@ int64_t interval_of(int64_t t_ns, int64_t interval_ns) {
 
 ErrorTrack::ErrorTrack(std::size_t capacity) : capacity_(capacity) {}
 
-void ErrorTrack::add(const Epoch& epoch, const Eigen::Vector3d& error_n) {
+void ErrorTrack::add(const state::Epoch& epoch, const Eigen::Vector3d& error_n) {
   put({epoch.t_ns, epoch.position, error_n});
   if (points_.size() > capacity_) widen();
 }

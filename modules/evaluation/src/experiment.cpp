@@ -23,13 +23,14 @@ class RunWatcher : public OutageRunObserver {
  public:
   explicit RunWatcher(const std::function<void(double)>& progress) : progress_(progress) {}
 
-  void notice(const Notice& notice) override {
+  void notice(const state::Notice& notice) override {
     if (notices_.size() < kMostNotices) notices_.push_back(notice);
   }
-  void reference_error(const Epoch& epoch, const ReferenceError& error) override {
+  void reference_error(const state::Epoch& epoch, const state::ReferenceError& error) override {
     by_reference_.add(epoch, error.position_n);
   }
-  void withheld_error(const Outage&, const Epoch& epoch, const Eigen::Vector3d& error_n) override {
+  void withheld_error(const Outage&, const state::Epoch& epoch,
+                      const Eigen::Vector3d& error_n) override {
     by_fixes_.add(epoch, error_n);
   }
   void progress(double part) override {
@@ -39,13 +40,13 @@ class RunWatcher : public OutageRunObserver {
   const std::vector<TrackPoint>& track(DriftTruth truth) const {
     return (truth == DriftTruth::reference ? by_reference_ : by_fixes_).points();
   }
-  const std::vector<Notice>& notices() const { return notices_; }
+  const std::vector<state::Notice>& notices() const { return notices_; }
 
  private:
   const std::function<void(double)>& progress_;
   ErrorTrack by_reference_;
   ErrorTrack by_fixes_;
-  std::vector<Notice> notices_;
+  std::vector<state::Notice> notices_;
 };
 
 /// A recording without an outage in the earliest of its schedules has none in the others.

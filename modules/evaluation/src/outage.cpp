@@ -68,7 +68,7 @@ std::optional<double> OutageSchedule::first_end_s() const {
   return to_seconds(starts_ns_.front() + length_ns_);
 }
 
-OutageSource::OutageSource(std::unique_ptr<Source> source, OutageSchedule schedule,
+OutageSource::OutageSource(std::unique_ptr<state::Source> source, OutageSchedule schedule,
                            Withheld withheld)
     : source_(std::move(source)), schedule_(std::move(schedule)), withheld_(std::move(withheld)) {}
 
@@ -86,11 +86,11 @@ std::optional<Measurement> OutageSource::next() {
   return EpochRequest{fix->t_ns};
 }
 
-const Mounting& OutageSource::mounting() const { return source_->mounting(); }
+const state::Mounting& OutageSource::mounting() const { return source_->mounting(); }
 
 double OutageSource::from_first_fix(const GnssFix& fix) const {
   if (!first_position_ || !has_position(fix)) return std::numeric_limits<double>::quiet_NaN();
-  return LocalFrame(*first_position_).to_local(fix.antenna).norm();
+  return geodesy::LocalFrame(*first_position_).to_local(fix.antenna).norm();
 }
 
 double OutageSource::progress() const { return source_->progress(); }

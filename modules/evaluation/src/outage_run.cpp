@@ -17,18 +17,18 @@ double thread_cpu_s() {
 }
 
 /// Takes the epochs of a run and measures them against both truths.
-class DriftMeter : public Sink {
+class DriftMeter : public state::Sink {
  public:
-  DriftMeter(std::unique_ptr<Source> source, const OutageSchedule& schedule,
+  DriftMeter(std::unique_ptr<state::Source> source, const OutageSchedule& schedule,
              const OutageRunOptions& options, OutageRunObserver* observer)
       : observer_(observer),
         by_reference_(options.marks_s),
         by_fixes_(options.marks_s),
-        withheld_([this](const Outage& outage, const GnssFix& fix, const Epoch& epoch,
+        withheld_([this](const Outage& outage, const GnssFix& fix, const state::Epoch& epoch,
                          const Eigen::Vector3d& error_n) {
           withheld_error(outage, fix, epoch, error_n);
         }),
-        returned_([this](const Outage&, const GnssFix&, const Epoch& epoch,
+        returned_([this](const Outage&, const GnssFix&, const state::Epoch& epoch,
                          const Eigen::Vector3d& error_n) {
           return_by_fixes_.error(epoch.t_ns, error_n);
         }),
@@ -36,7 +36,7 @@ class DriftMeter : public Sink {
                 [this](const Outage& outage, const GnssFix& fix) { withheld(outage, fix); }),
         comparison_(
             source_.mounting(),
-            [this](const Epoch& epoch, const ReferenceError& error) {
+            [this](const state::Epoch& epoch, const state::ReferenceError& error) {
               reference_error(epoch, error);
             },
             options.reference) {}
@@ -49,16 +49,16 @@ class DriftMeter : public Sink {
     if (const auto* fix = std::get_if<GnssFix>(&measurement)) see_fix(*fix);
   }
 
-  void epoch(const Epoch& epoch) override {
+  void epoch(const state::Epoch& epoch) override {
     if (observer_) observer_->epoch(epoch);
     withheld_.epoch(epoch);
     returned_.epoch(epoch);
     comparison_.add(epoch);
   }
-  void fix(const FixResult& fix) override {
+  void fix(const state::FixResult& fix) override {
     if (observer_) observer_->fix(fix);
   }
-  void notice(const Notice& notice) override {
+  void notice(const state::Notice& notice) override {
     if (observer_) observer_->notice(notice);
   }
 
@@ -101,21 +101,21 @@ class DriftMeter : public Sink {
     distances_m_.try_emplace(outage.index, source_.from_first_fix(fix));
     withheld_.add(outage, fix);
   }
-  void withheld_error(const Outage& outage, const GnssFix& fix, const Epoch& epoch,
+  void withheld_error(const Outage& outage, const GnssFix& fix, const state::Epoch& epoch,
                       const Eigen::Vector3d& error_n) {
     if (observer_) observer_->withheld_error(outage, epoch, error_n);
     const Eigen::Matrix3d covariance =
         antenna_covariance(epoch, fix.p_b_a) + fix.position_covariance;
     by_fixes_.add(outage, epoch.t_ns, error_n, normalized_squares(error_n, covariance));
   }
-  void reference_error(const Epoch& epoch, const ReferenceError& error) {
+  void reference_error(const state::Epoch& epoch, const state::ReferenceError& error) {
     if (observer_) observer_->reference_error(epoch, error);
     const std::optional<Outage> outage = source_.outage_at(epoch.t_ns);
     if (!outage) {
       return_by_reference_.error(epoch.t_ns, error.position_n);
       return;
     }
-    const Eigen::Matrix3d covariance = epoch.covariance_of(block::position);
+    const Eigen::Matrix3d covariance = epoch.covariance_of(state::block::position);
     by_reference_.add(*outage, epoch.t_ns, error.position_n,
                       normalized_squares(error.position_n, covariance));
   }
@@ -135,12 +135,14 @@ class DriftMeter : public Sink {
 
 }  // namespace
 
-OutageRunResult run_with_outages(std::unique_ptr<Source> source, const OutageSchedule& schedule,
+OutageRunResult run_with_outages(std::unique_ptr<state::Source> source,
+                                 const OutageSchedule& schedule,
                                  const EstimatorFactory& make_estimator,
                                  const OutageRunOptions& options, OutageRunObserver* observer) {
   const double cpu_before_s = thread_cpu_s();
   DriftMeter meter(std::move(source), schedule, options, observer);
-  const std::unique_ptr<Estimator> estimator = make_estimator(meter.source().mounting(), meter);
+  const std::unique_ptr<state::Estimator> estimator =
+      make_estimator(meter.source().mounting(), meter);
   while (const std::optional<Measurement> measurement = meter.source().next()) {
     meter.see(*measurement);
     estimator->process(*measurement);

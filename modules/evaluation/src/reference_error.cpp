@@ -29,7 +29,7 @@ Eigen::Vector3d euler_difference(const so3::Euler& a, const so3::Euler& b) {
 ReferencePose interpolate(const ReferencePose& a, const ReferencePose& b, int64_t t_ns) {
   const double dt = seconds_between(a.t_ns, b.t_ns);
   const double s = seconds_between(a.t_ns, t_ns) / dt;
-  const LocalFrame at_a(a.position);
+  const geodesy::LocalFrame at_a(a.position);
   const Eigen::Vector3d b_w = at_a.to_local(b.position);
 
   ReferencePose between;
@@ -45,20 +45,20 @@ ReferencePose interpolate(const ReferencePose& a, const ReferencePose& b, int64_
   return between;
 }
 
-ReferenceError reference_error(const Epoch& epoch, const Mounting& mounting,
-                               const ReferencePose& reference) {
-  ReferenceError error;
+state::ReferenceError reference_error(const state::Epoch& epoch, const state::Mounting& mounting,
+                                      const ReferencePose& reference) {
+  state::ReferenceError error;
   error.t_ns = epoch.t_ns;
-  error.position_n = ned_offset(reference.position, epoch.position);
+  error.position_n = geodesy::ned_offset(reference.position, epoch.position);
   if (reference.velocity_n) error.velocity_n = epoch.velocity_n - *reference.velocity_n;
   if (reference.q_n_v) {
-    error.euler =
-        euler_difference(vehicle_attitude(epoch, mounting).euler, so3::to_euler(*reference.q_n_v));
+    error.euler = euler_difference(state::vehicle_attitude(epoch, mounting).euler,
+                                   so3::to_euler(*reference.q_n_v));
   }
   return error;
 }
 
-ReferenceComparison::ReferenceComparison(const Mounting& mounting, Callback callback,
+ReferenceComparison::ReferenceComparison(const state::Mounting& mounting, Callback callback,
                                          const ReferenceComparisonOptions& options)
     : mounting_(mounting),
       callback_(std::move(callback)),
@@ -72,7 +72,7 @@ void ReferenceComparison::add(const ReferencePose& reference) {
   compare_pending();
 }
 
-void ReferenceComparison::add(const Epoch& epoch) {
+void ReferenceComparison::add(const state::Epoch& epoch) {
   pending_.push_back(epoch);
   compare_pending();
 }
@@ -82,7 +82,7 @@ void ReferenceComparison::compare_pending() {
 }
 
 /// Whether `epoch` is dealt with; false while its reference may still come.
-bool ReferenceComparison::compare(const Epoch& epoch) {
+bool ReferenceComparison::compare(const state::Epoch& epoch) {
   while (references_.size() > 1 && references_[1].t_ns <= epoch.t_ns) references_.pop_front();
   if (references_.empty() || references_.back().t_ns < epoch.t_ns) {
     return pending_.back().t_ns - epoch.t_ns > max_gap_ns_;
@@ -101,7 +101,7 @@ bool ReferenceComparison::close_enough(const ReferencePose& a, const ReferencePo
   return b.t_ns - a.t_ns <= (cubic ? max_gap_ns_ : std::min(max_gap_ns_, max_linear_gap_ns_));
 }
 
-void ReferenceComparison::emit(const Epoch& epoch, const ReferencePose& reference) const {
+void ReferenceComparison::emit(const state::Epoch& epoch, const ReferencePose& reference) const {
   callback_(epoch, reference_error(epoch, mounting_, reference));
 }
 

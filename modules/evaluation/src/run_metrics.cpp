@@ -13,7 +13,7 @@ namespace foucault::evaluation {
 namespace {
 
 /// Right perturbation, in v, that leads from the estimate to the truth.
-Eigen::Vector3d rotation_error(const VehicleAttitude& attitude,
+Eigen::Vector3d rotation_error(const state::VehicleAttitude& attitude,
                                const Eigen::Vector3d& euler_error) {
   const so3::Euler truth{attitude.euler.roll - euler_error[0],
                          attitude.euler.pitch - euler_error[1],
@@ -41,10 +41,11 @@ std::optional<double> normalized_square(const Eigen::Vector3d& error,
   return std::isfinite(square) ? std::optional(square) : std::nullopt;
 }
 
-std::vector<CalibratedBlock> calibrated_blocks(const Epoch& epoch, const Layout& layout) {
+std::vector<CalibratedBlock> calibrated_blocks(const state::Epoch& epoch,
+                                               const state::Layout& layout) {
   std::vector<CalibratedBlock> blocks;
-  const SlowVector variance = epoch.covariance.diagonal().tail(layout.slow_size());
-  for (const SlowBlock& slow : layout.slow()) {
+  const state::SlowVector variance = epoch.covariance.diagonal().tail(layout.slow_size());
+  for (const state::SlowBlock& slow : layout.slow()) {
     CalibratedBlock& out = blocks.emplace_back(CalibratedBlock{slow.block, {}, {}});
     for (int i = slow.index; i < slow.index + slow.block.size; ++i) {
       out.value.push_back(epoch.slow[i]);
@@ -78,11 +79,11 @@ InsideSigma RunMetricsCollector::Errors::inside_sigma() const {
   return {squares.samples, inside / static_cast<double>(squares.samples)};
 }
 
-RunMetricsCollector::RunMetricsCollector(const Mounting& mounting, int64_t from_ns,
+RunMetricsCollector::RunMetricsCollector(const state::Mounting& mounting, int64_t from_ns,
                                          ConsistencyCollector::Callback on_square)
     : mounting_(mounting), from_ns_(from_ns), consistency_(from_ns, std::move(on_square)) {}
 
-void RunMetricsCollector::epoch(const Epoch& epoch) {
+void RunMetricsCollector::epoch(const state::Epoch& epoch) {
   if (states_.given_out == 0) states_.begin_ns = epoch.t_ns;
   last_ns_ = epoch.t_ns;
   ++states_.given_out;
@@ -91,13 +92,13 @@ void RunMetricsCollector::epoch(const Epoch& epoch) {
   ++states_.not_finite;
 }
 
-void RunMetricsCollector::fix(const FixResult& fix) {
+void RunMetricsCollector::fix(const state::FixResult& fix) {
   consistency_.fix(fix);
-  if (fix.verdict == FixVerdict::corrected) {
+  if (fix.verdict == state::FixVerdict::corrected) {
     ++corrected_;
     return;
   }
-  if (fix.verdict != FixVerdict::used) {
+  if (fix.verdict != state::FixVerdict::used) {
     ++rejected_;
     add_rejected(fix);
     return;
@@ -108,27 +109,28 @@ void RunMetricsCollector::fix(const FixResult& fix) {
   postfit_.add(fix.postfit_n);
 }
 
-void RunMetricsCollector::add_rejected(const FixResult& fix) {
+void RunMetricsCollector::add_rejected(const state::FixResult& fix) {
   const std::optional<double> nis = normalized_square(fix.innovation_n, fix.innovation_covariance);
   if (!nis || fix.t_ns < from_ns_) return;
   rejected_innovation_.add(fix.innovation_n);
   rejected_nis_sum_ += *nis;
 }
 
-void RunMetricsCollector::observation(const ObservationResult& result) {
+void RunMetricsCollector::observation(const state::ObservationResult& result) {
   AidMetrics& aid = aids_[std::string(result.name)];
   aid.dimension = result.dimension;
   ++(result.used ? aid.used : aid.rejected);
   if (result.used) aid.nis_sum += result.normalized_square;
 }
 
-void RunMetricsCollector::prediction(const PredictionResult& prediction) {
+void RunMetricsCollector::prediction(const state::PredictionResult& prediction) {
   consistency_.prediction(prediction);
 }
 
-void RunMetricsCollector::reference_error(const Epoch& epoch, const ReferenceError& error) {
-  const Eigen::Matrix3d position = epoch.covariance_of(block::position);
-  const Eigen::Matrix3d velocity = epoch.covariance_of(block::velocity);
+void RunMetricsCollector::reference_error(const state::Epoch& epoch,
+                                          const state::ReferenceError& error) {
+  const Eigen::Matrix3d position = epoch.covariance_of(state::block::position);
+  const Eigen::Matrix3d velocity = epoch.covariance_of(state::block::velocity);
   const int64_t t_ns = error.t_ns;
   consistency_.error(NormalizedKind::position, t_ns, error.position_n, position);
   if (error.velocity_n) {
@@ -140,9 +142,9 @@ void RunMetricsCollector::reference_error(const Epoch& epoch, const ReferenceErr
   if (error.velocity_n) velocity_.add(*error.velocity_n, sigmas(velocity));
 }
 
-void RunMetricsCollector::add_attitude(const Epoch& epoch, int64_t t_ns,
+void RunMetricsCollector::add_attitude(const state::Epoch& epoch, int64_t t_ns,
                                        const Eigen::Vector3d& euler_error) {
-  const VehicleAttitude attitude = vehicle_attitude(epoch, mounting_);
+  const state::VehicleAttitude attitude = state::vehicle_attitude(epoch, mounting_);
   const Eigen::Vector3d rotation = rotation_error(attitude, euler_error);
   consistency_.error(NormalizedKind::attitude, t_ns, rotation, attitude.covariance_v);
   if (t_ns < from_ns_) return;

@@ -155,7 +155,7 @@ Summary summarize(const std::vector<double>& values, const BootstrapOptions& opt
   Summary s;
   s.count = static_cast<int64_t>(values.size());
   s.rms = of([](const std::vector<double>& v) { return root_mean_square(v); });
-  s.mean = of([](const std::vector<double>& v) { return foucault::mean(v); });
+  s.mean = of([](const std::vector<double>& v) { return evaluation::mean(v); });
   s.median = of([](const std::vector<double>& v) { return quantile(v, 0.5); });
   s.p68 = of([](const std::vector<double>& v) { return quantile(v, 0.68); });
   s.p95 = of([](const std::vector<double>& v) { return quantile(v, 0.95); });

@@ -10,7 +10,7 @@
 #include "foucault/core/error.h"
 #include "foucault/core/time.h"
 
-namespace foucault {
+namespace foucault::evaluation {
 namespace {
 
 std::vector<std::string> methods_of(const std::vector<ExperimentResult>& results) {
@@ -97,7 +97,7 @@ TextTable EvaluationSummary::normalized_table() const {
 }
 
 TextTable EvaluationSummary::return_table() const {
-  return foucault::return_table(returns_, row_header_);
+  return evaluation::return_table(returns_, row_header_);
 }
 
 std::string outages_text(const EvaluationSummary& summary) {
@@ -121,4 +121,4 @@ std::vector<std::string> evaluation_lines(const EvaluationSummary& summary) {
   return lines;
 }
 
-}  // namespace foucault
+}  // namespace foucault::evaluation

@@ -124,7 +124,7 @@ std::optional<Finding> on_aid(const std::string& name, const AidMetrics& aid) {
 
 }  // namespace
 
-bool is_finite(const Epoch& epoch) {
+bool is_finite(const state::Epoch& epoch) {
   return std::isfinite(epoch.position.latitude) && std::isfinite(epoch.position.longitude) &&
          std::isfinite(epoch.position.height) && epoch.velocity_n.allFinite() &&
          epoch.q_n_b.coeffs().allFinite() && epoch.bias.gyro.allFinite() &&

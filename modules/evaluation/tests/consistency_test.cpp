@@ -47,7 +47,7 @@ Consistency of_fixes(int count, double memory, double sigma_error, unsigned seed
   Noise noise(memory, seed);
   ConsistencyCollector collector;
   for (int i = 0; i < count; ++i) {
-    FixResult fix;
+    state::FixResult fix;
     fix.t_ns = nanoseconds(0.5 * i);
     fix.innovation_n = sigma_error * root * noise.next();
     fix.innovation_covariance = covariance;
@@ -246,11 +246,11 @@ TEST(Consistency, RunningMeanIsOverUsedFixesOnly) {
   ConsistencyCollector collector(std::numeric_limits<int64_t>::min(),
                                  [&squares](const NormalizedSquare& s) { squares.push_back(s); });
   for (int i = 0; i < 40; ++i) {
-    FixResult fix;
+    state::FixResult fix;
     fix.t_ns = nanoseconds(i);
     fix.innovation_covariance.setIdentity();
     fix.innovation_n.x() = i == 20 ? 100 : 2;
-    if (i == 20) fix.verdict = FixVerdict::gated;
+    if (i == 20) fix.verdict = state::FixVerdict::gated;
     collector.fix(fix);
   }
   ASSERT_EQ(squares.size(), 40U);
@@ -281,7 +281,7 @@ TEST(Consistency, StatisticsLeaveOutWhatComesBefore) {
 TEST(Consistency, PredictionsArePooledByTheirHorizon) {
   ConsistencyCollector collector(nanoseconds(10));
   for (int t = 9; t < 20; ++t) {
-    PredictionResult prediction;
+    state::PredictionResult prediction;
     prediction.t_ns = nanoseconds(t);
     prediction.innovation_covariance = 4 * Eigen::Matrix3d::Identity();
     for (const double ahead_s : {30.0, 5.0}) {

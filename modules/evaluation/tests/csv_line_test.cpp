@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace foucault {
+namespace foucault::evaluation {
 namespace {
 
 TEST(CsvLine, ReadsBackWhatItWrites) {
@@ -14,4 +14,4 @@ TEST(CsvLine, ReadsBackWhatItWrites) {
 }
 
 }  // namespace
-}  // namespace foucault
+}  // namespace foucault::evaluation

@@ -80,16 +80,16 @@ TEST(DriftCollector, LeavesOutIncompleteOutages) {
 }
 
 TEST(AntennaPosition, AddsTheLeverArm) {
-  Epoch epoch;
+  state::Epoch epoch;
   epoch.position = kHome;
   epoch.q_n_b = so3::from_euler({0, 0, kPi / 2});  // forward is east, right is south
   const Geodetic antenna = antenna_position(epoch, {1, 2, -3});
   // The horizon's scale at 3 m more height: 2.2 m * 3 m / R.
-  EXPECT_LT((ned_offset(kHome, antenna) - Eigen::Vector3d(-2, 1, -3)).norm(), 2e-6);
+  EXPECT_LT((geodesy::ned_offset(kHome, antenna) - Eigen::Vector3d(-2, 1, -3)).norm(), 2e-6);
 }
 
 TEST(AntennaPosition, CovarianceIsThatOfSmallErrors) {
-  Epoch epoch;
+  state::Epoch epoch;
   epoch.position = kHome;
   epoch.q_n_b = so3::from_euler({0.1, -0.2, 0.7});
   const Eigen::Vector3d p_b_a(1, 2, -3);
@@ -98,10 +98,11 @@ TEST(AntennaPosition, CovarianceIsThatOfSmallErrors) {
   epoch.covariance = errors * errors.transpose();
   Eigen::Matrix<double, 3, 6> moved;
   for (int i = 0; i < 6; ++i) {
-    Epoch other = epoch;
-    other.position = LocalFrame(kHome).to_geodetic(errors.col(i).segment<3>(0));
+    state::Epoch other = epoch;
+    other.position = geodesy::LocalFrame(kHome).to_geodetic(errors.col(i).segment<3>(0));
     other.q_n_b = epoch.q_n_b * so3::exp(Eigen::Vector3d(errors.col(i).segment<3>(6)));
-    moved.col(i) = ned_offset(antenna_position(epoch, p_b_a), antenna_position(other, p_b_a));
+    moved.col(i) =
+        geodesy::ned_offset(antenna_position(epoch, p_b_a), antenna_position(other, p_b_a));
   }
   const Eigen::Matrix3d expected = moved * moved.transpose();
   const Eigen::Matrix3d covariance = antenna_covariance(epoch, p_b_a);
@@ -137,7 +138,7 @@ TEST(SampleNear, IsTheNearestWithinASecond) {
 
 TEST(FixTruth, ComparesAtTheAntenna) {
   std::vector<Eigen::Vector3d> errors;
-  FixTruth truth([&](const Outage& outage, const GnssFix& fix, const Epoch& at,
+  FixTruth truth([&](const Outage& outage, const GnssFix& fix, const state::Epoch& at,
                      const Eigen::Vector3d& error_n) {
     EXPECT_EQ(outage.index, kOutage.index);
     EXPECT_EQ(fix.t_ns, after_begin(2));
@@ -151,8 +152,8 @@ TEST(FixTruth, ComparesAtTheAntenna) {
     fix.antenna = kHome;
     truth.add(kOutage, fix);
   }
-  Epoch epoch;  // 2 m below the antenna, and off by (0.3, -0.4, 0.1)
-  epoch.position = LocalFrame(kHome).to_geodetic({0.3, -0.4, 2.1});
+  state::Epoch epoch;  // 2 m below the antenna, and off by (0.3, -0.4, 0.1)
+  epoch.position = geodesy::LocalFrame(kHome).to_geodetic({0.3, -0.4, 2.1});
   for (const double t : {0.5, 1.5, 2.0, 2.5}) {
     epoch.t_ns = after_begin(t);
     truth.epoch(epoch);

@@ -66,7 +66,7 @@ TEST(Experiment, OnlyCommonOutagesAreCompared) {
 }
 
 /// Fails as soon as it gets an increment.
-class FailingEstimator : public Estimator {
+class FailingEstimator : public state::Estimator {
  public:
   void process(const Measurement& measurement) override {
     if (std::holds_alternative<ImuIncrement>(measurement)) throw EstimatorFailure("lost its way");
@@ -83,7 +83,7 @@ TEST(Experiment, AMethodThatFailsOnceTakesNoOtherWithIt) {
     return records_csv(run_experiments(runs, 2));
   }();
   std::vector<ExperimentRun> runs = test::drifting_runs();
-  runs[1].make_estimator = [](const Mounting&, Sink&) {
+  runs[1].make_estimator = [](const state::Mounting&, state::Sink&) {
     return std::make_unique<FailingEstimator>();
   };
   std::vector<ExperimentResult> results = run_experiments(runs, 2);
@@ -125,7 +125,7 @@ TEST(Experiment, TrackKeepsErrorsAndProgressGoesOn) {
 
 TEST(ErrorTrack, StaysSmallAndKeepsPeaks) {
   ErrorTrack track(100);
-  Epoch epoch;
+  state::Epoch epoch;
   for (int i = 0; i < 100'000; ++i) {
     epoch.t_ns = i * 100'000'000LL;
     track.add(epoch, {i == 54'321 ? 7.0 : 1.0, 0, 0});

@@ -23,7 +23,9 @@ OutageSchedule schedule() {
 }
 
 EstimatorFactory drifting() {
-  return [](const Mounting&, Sink& sink) { return std::make_unique<DriftingEstimator>(sink); };
+  return [](const state::Mounting&, state::Sink& sink) {
+    return std::make_unique<DriftingEstimator>(sink);
+  };
 }
 
 void expect_known_drift(const OutageRunResult& result) {
@@ -83,9 +85,9 @@ TEST(OutageRun, AgainstWithheldFixes) {
 }
 
 /// Takes fixes only from ten seconds after an outage on, or not at all.
-class LockedOut : public Estimator {
+class LockedOut : public state::Estimator {
  public:
-  LockedOut(Sink& sink, bool for_good) : estimator_(sink), for_good_(for_good) {}
+  LockedOut(state::Sink& sink, bool for_good) : estimator_(sink), for_good_(for_good) {}
   void process(const Measurement& measurement) override {
     if (const auto* fix = std::get_if<GnssFix>(&measurement)) {
       if (last_ns_ && seconds_between(*last_ns_, fix->t_ns) > 20) return_ns_ = fix->t_ns;
@@ -109,7 +111,7 @@ TEST(OutageRun, AnEstimatorThatRejectsFixesShowsInTheReturn) {
     for (const bool for_good : {false, true}) {
       const OutageRunResult result =
           run_with_outages(std::make_unique<RestSource>(275, with_reference), schedule(),
-                           [for_good](const Mounting&, Sink& sink) {
+                           [for_good](const state::Mounting&, state::Sink& sink) {
                              return std::make_unique<LockedOut>(sink, for_good);
                            });
       ASSERT_EQ(result.drifts.size(), 3u);
@@ -134,9 +136,9 @@ TEST(OutageRun, ObserverSeesEverything) {
     int errors = 0;
     int withheld = 0;
     double last_progress = 0;
-    void epoch(const Epoch&) override { ++epochs; }
-    void reference_error(const Epoch&, const ReferenceError&) override { ++errors; }
-    void withheld_error(const Outage&, const Epoch&, const Eigen::Vector3d&) override {
+    void epoch(const state::Epoch&) override { ++epochs; }
+    void reference_error(const state::Epoch&, const state::ReferenceError&) override { ++errors; }
+    void withheld_error(const Outage&, const state::Epoch&, const Eigen::Vector3d&) override {
       ++withheld;
     }
     void progress(double value) override { last_progress = value; }

@@ -94,7 +94,7 @@ TEST(OutageOptions, ReadFromConfig) {
   EXPECT_THROW(load_config_text("{length_s: 0}", "c.yaml", options), UsageError);
 }
 
-class ListSource : public Source {
+class ListSource : public state::Source {
  public:
   explicit ListSource(std::vector<Measurement> measurements)
       : measurements_(std::move(measurements)) {
@@ -104,7 +104,7 @@ class ListSource : public Source {
     if (next_ == measurements_.size()) return std::nullopt;
     return measurements_[next_++];
   }
-  const Mounting& mounting() const override { return mounting_; }
+  const state::Mounting& mounting() const override { return mounting_; }
   double progress() const override {
     return static_cast<double>(next_) / static_cast<double>(measurements_.size());
   }
@@ -112,7 +112,7 @@ class ListSource : public Source {
  private:
   std::vector<Measurement> measurements_;
   std::size_t next_ = 0;
-  Mounting mounting_;
+  state::Mounting mounting_;
 };
 
 GnssFix fix_at(double seconds) {

@@ -21,7 +21,7 @@ Eigen::Vector3d circle(double t) {
 }
 
 ReferencePose reference_at(double t, bool with_velocity = true, bool with_attitude = true) {
-  const LocalFrame frame(kHome);
+  const geodesy::LocalFrame frame(kHome);
   ReferencePose pose;
   pose.t_ns = nanoseconds(t);
   pose.position = frame.to_geodetic(circle(t));
@@ -32,24 +32,24 @@ ReferencePose reference_at(double t, bool with_velocity = true, bool with_attitu
 }
 
 /// An epoch that errs by `offset_n` from the circle.
-Epoch epoch_at(double t, const Eigen::Vector3d& offset_n = Eigen::Vector3d::Zero()) {
+state::Epoch epoch_at(double t, const Eigen::Vector3d& offset_n = Eigen::Vector3d::Zero()) {
   const ReferencePose truth = reference_at(t);
-  Epoch epoch;
+  state::Epoch epoch;
   epoch.t_ns = truth.t_ns;
-  epoch.position = LocalFrame(truth.position).to_geodetic(offset_n);
+  epoch.position = geodesy::LocalFrame(truth.position).to_geodetic(offset_n);
   epoch.velocity_n = *truth.velocity_n;
   epoch.q_n_b = *truth.q_n_v;
   return epoch;
 }
 
 struct Recorder {
-  std::vector<ReferenceError> errors;
+  std::vector<state::ReferenceError> errors;
   ReferenceComparison comparison;
 
   explicit Recorder(const ReferenceComparisonOptions& options = {})
       : comparison(
-            Mounting(),
-            [this](const Epoch& epoch, const ReferenceError& error) {
+            state::Mounting(),
+            [this](const state::Epoch& epoch, const state::ReferenceError& error) {
               EXPECT_EQ(epoch.t_ns, error.t_ns);
               errors.push_back(error);
             },
@@ -63,7 +63,7 @@ TEST(Interpolate, CubicFollowsACircle) {
     const ReferencePose pose = interpolate(a, b, nanoseconds(t));
     const ReferencePose truth = reference_at(t);
     // Hermite's remainder: r omega^4 dt^4 / 384 = 26 um.
-    EXPECT_LT(ned_offset(truth.position, pose.position).norm(), 3e-5) << t;
+    EXPECT_LT(geodesy::ned_offset(truth.position, pose.position).norm(), 3e-5) << t;
     // Linear between: r omega^3 dt^2 / 8 = 12.5 mm/s.
     EXPECT_LT((*pose.velocity_n - *truth.velocity_n).norm(), 0.0126) << t;
     EXPECT_LT(so3::log(truth.q_n_v->conjugate() * *pose.q_n_v).norm(), 1e-14) << t;
@@ -74,17 +74,17 @@ TEST(Interpolate, CubicFollowsACircle) {
 TEST(Interpolate, LinearWithoutVelocity) {
   const ReferencePose pose =
       interpolate(reference_at(3, false), reference_at(4, true, false), nanoseconds(3.5));
-  const double miss = ned_offset(reference_at(3.5).position, pose.position).norm();
+  const double miss = geodesy::ned_offset(reference_at(3.5).position, pose.position).norm();
   EXPECT_NEAR(miss, 1.0 / 8, 1e-3);  // a dt^2 / 8
   EXPECT_FALSE(pose.velocity_n);
   EXPECT_FALSE(pose.q_n_v);
 }
 
 TEST(ReferenceError, IsEstimateMinusReference) {
-  Epoch epoch = epoch_at(3, {1, -2, 0.5});
+  state::Epoch epoch = epoch_at(3, {1, -2, 0.5});
   epoch.velocity_n += Eigen::Vector3d(0.1, 0.2, -0.3);
   epoch.q_n_b = so3::from_euler({0.03, -0.03, 0.3 + 0.05});
-  const ReferenceError error = reference_error(epoch, Mounting(), reference_at(3));
+  const state::ReferenceError error = reference_error(epoch, state::Mounting(), reference_at(3));
   // 1e-6: the horizon of the reference against that of the estimate.
   EXPECT_LT((error.position_n - Eigen::Vector3d(1, -2, 0.5)).norm(), 2e-6);
   EXPECT_LT((*error.velocity_n - Eigen::Vector3d(0.1, 0.2, -0.3)).norm(), 1e-14);
@@ -94,24 +94,24 @@ TEST(ReferenceError, IsEstimateMinusReference) {
 TEST(ReferenceError, HeadingErrorIsWrapped) {
   ReferencePose reference = reference_at(0);
   reference.q_n_v = so3::from_euler({0, 0, 0.01});
-  Epoch epoch = epoch_at(0);
+  state::Epoch epoch = epoch_at(0);
   epoch.q_n_b = so3::from_euler({0, 0, -0.01});  // 6.27 rad
-  EXPECT_NEAR((*reference_error(epoch, Mounting(), reference).euler)[2], -0.02, 1e-14);
+  EXPECT_NEAR((*reference_error(epoch, state::Mounting(), reference).euler)[2], -0.02, 1e-14);
 }
 
 TEST(ReferenceError, AttitudeIsTheVehicles) {
-  Mounting mounting;
+  state::Mounting mounting;
   mounting.q_v_b = so3::exp({0.5, 2, -1});
-  Epoch epoch = epoch_at(3);
+  state::Epoch epoch = epoch_at(3);
   epoch.q_n_b = epoch.q_n_b * mounting.q_v_b;
   EXPECT_LT(reference_error(epoch, mounting, reference_at(3)).euler->norm(), 1e-14);
 }
 
 TEST(ReferenceError, AFarEstimateHasNoFalseHeight) {
-  const Epoch epoch = epoch_at(3);
+  const state::Epoch epoch = epoch_at(3);
   ReferencePose reference = reference_at(3);
   reference.position.latitude += 1e-3;  // 6.4 km, of which the horizon makes 3.2 m of height
-  EXPECT_NEAR(reference_error(epoch, Mounting(), reference).position_n.z(), 0, 1e-9);
+  EXPECT_NEAR(reference_error(epoch, state::Mounting(), reference).position_n.z(), 0, 1e-9);
 }
 
 TEST(ReferenceComparison, ExactWhereStampsMatch) {
@@ -136,7 +136,7 @@ TEST(ReferenceComparison, EpochsMayComeBeforeTheirReference) {
   EXPECT_EQ(r.errors.size(), 1u);
   r.comparison.add(reference_at(1));
   ASSERT_EQ(r.errors.size(), 4u);
-  for (const ReferenceError& e : r.errors) EXPECT_LT(e.position_n.norm(), 3e-5);
+  for (const state::ReferenceError& e : r.errors) EXPECT_LT(e.position_n.norm(), 3e-5);
 }
 
 TEST(ReferenceComparison, EpochsMayComeMuchLater) {
@@ -144,7 +144,7 @@ TEST(ReferenceComparison, EpochsMayComeMuchLater) {
   for (int t = 0; t <= 100; ++t) r.comparison.add(reference_at(t));
   for (int t = 10; t <= 100; ++t) r.comparison.add(epoch_at(t - 0.5));
   ASSERT_EQ(r.errors.size(), 91u);
-  for (const ReferenceError& e : r.errors) EXPECT_LT(e.position_n.norm(), 3e-5);
+  for (const state::ReferenceError& e : r.errors) EXPECT_LT(e.position_n.norm(), 3e-5);
 }
 
 TEST(ReferenceComparison, NothingAcrossAGap) {
@@ -152,7 +152,7 @@ TEST(ReferenceComparison, NothingAcrossAGap) {
   for (const double t : {0.0, 1.0, 2.5, 3.0}) r.comparison.add(reference_at(t));
   for (const double t : {0.5, 1.0, 1.5, 2.4, 2.5, 2.75}) r.comparison.add(epoch_at(t));
   std::vector<int64_t> stamps;
-  for (const ReferenceError& e : r.errors) stamps.push_back(e.t_ns / 10'000'000);
+  for (const state::ReferenceError& e : r.errors) stamps.push_back(e.t_ns / 10'000'000);
   EXPECT_EQ(stamps, (std::vector<int64_t>{50, 100, 250, 275}));
 }
 

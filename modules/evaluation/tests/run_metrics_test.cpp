@@ -11,15 +11,16 @@
 namespace foucault::evaluation {
 namespace {
 
-Epoch epoch_at(double t) {
-  Epoch epoch;
+state::Epoch epoch_at(double t) {
+  state::Epoch epoch;
   epoch.t_ns = nanoseconds(t);
   epoch.covariance.diagonal().head<9>() << 1, 4, 9, 0.01, 0.01, 0.01, 1e-4, 1e-4, 4e-4;
   return epoch;
 }
 
-FixResult used_fix(double t, const Eigen::Vector3d& innovation, const Eigen::Vector3d& postfit) {
-  FixResult fix;
+state::FixResult used_fix(double t, const Eigen::Vector3d& innovation,
+                          const Eigen::Vector3d& postfit) {
+  state::FixResult fix;
   fix.t_ns = nanoseconds(t);
   fix.innovation_n = innovation;
   fix.innovation_covariance = Eigen::Vector3d(1, 4, 9).asDiagonal();
@@ -27,15 +28,15 @@ FixResult used_fix(double t, const Eigen::Vector3d& innovation, const Eigen::Vec
   return fix;
 }
 
-ReferenceError error_at(double t, const Eigen::Vector3d& position) {
-  ReferenceError error;
+state::ReferenceError error_at(double t, const Eigen::Vector3d& position) {
+  state::ReferenceError error;
   error.t_ns = nanoseconds(t);
   error.position_n = position;
   return error;
 }
 
 TEST(RunMetrics, OfNothingAreEmpty) {
-  const RunMetrics m = RunMetricsCollector(Mounting()).metrics();
+  const RunMetrics m = RunMetricsCollector(state::Mounting()).metrics();
   EXPECT_EQ(m.epochs, 0);
   EXPECT_EQ(m.duration_s, 0);
   EXPECT_EQ(m.gnss.used, 0);
@@ -44,21 +45,21 @@ TEST(RunMetrics, OfNothingAreEmpty) {
 }
 
 TEST(RunMetrics, CountsEpochsAndDuration) {
-  RunMetricsCollector collector{Mounting()};
+  RunMetricsCollector collector{state::Mounting()};
   for (const double t : {10.0, 10.5, 12.25}) collector.epoch(epoch_at(t));
   EXPECT_EQ(collector.metrics().epochs, 3);
   EXPECT_EQ(collector.metrics().duration_s, 2.25);
 }
 
 TEST(RunMetrics, FixesByHand) {
-  RunMetricsCollector collector{Mounting()};
+  RunMetricsCollector collector{state::Mounting()};
   collector.fix(used_fix(1, {3, 0, 3}, {1, 0, 0}));
   collector.fix(used_fix(2, {4, 2, 0}, {-1, 2, 0}));
-  FixResult gated = used_fix(3, {1000, 0, 0}, {1000, 0, 0});
-  gated.verdict = FixVerdict::gated;
+  state::FixResult gated = used_fix(3, {1000, 0, 0}, {1000, 0, 0});
+  gated.verdict = state::FixVerdict::gated;
   collector.fix(gated);  // counts, but is in no mean
-  FixResult corrected = gated;
-  corrected.verdict = FixVerdict::corrected;
+  state::FixResult corrected = gated;
+  corrected.verdict = state::FixVerdict::corrected;
   collector.fix(corrected);  // neither
   const GnssMetrics m = collector.metrics().gnss;
   EXPECT_EQ(m.used, 2);
@@ -75,14 +76,14 @@ TEST(RunMetrics, FixesByHand) {
 
 /// Beside those of used fixes; a fix that was never predicted has none.
 TEST(RunMetrics, RejectedFixesByHand) {
-  RunMetricsCollector collector{Mounting()};
+  RunMetricsCollector collector{state::Mounting()};
   for (const double north : {3.0, 4.0}) {
-    FixResult gated = used_fix(1, {north, 2, 0}, {0, 0, 0});
-    gated.verdict = FixVerdict::gated;
+    state::FixResult gated = used_fix(1, {north, 2, 0}, {0, 0, 0});
+    gated.verdict = state::FixVerdict::gated;
     collector.fix(gated);
   }
-  FixResult late;
-  late.verdict = FixVerdict::out_of_order;
+  state::FixResult late;
+  late.verdict = state::FixVerdict::out_of_order;
   collector.fix(late);
   const GnssMetrics m = collector.metrics().gnss;
   EXPECT_EQ(m.rejected, 3);
@@ -93,7 +94,7 @@ TEST(RunMetrics, RejectedFixesByHand) {
 }
 
 TEST(RunMetrics, StatisticsStartLaterThanCounts) {
-  RunMetricsCollector collector(Mounting(), nanoseconds(2));
+  RunMetricsCollector collector(state::Mounting(), nanoseconds(2));
   for (const double t : {0.0, 1.0, 2.0, 3.0}) {
     const double size = t < 2 ? 100 : 1;
     collector.epoch(epoch_at(t));
@@ -111,8 +112,8 @@ TEST(RunMetrics, StatisticsStartLaterThanCounts) {
 }
 
 TEST(RunMetrics, ReferenceByHand) {
-  RunMetricsCollector collector{Mounting()};
-  ReferenceError first = error_at(1, {3, 4, 2});
+  RunMetricsCollector collector{state::Mounting()};
+  state::ReferenceError first = error_at(1, {3, 4, 2});
   first.velocity_n = Eigen::Vector3d(0.1, 0.2, 0.2);
   first.euler = Eigen::Vector3d(0.01, -0.02, 0.05);
   collector.reference_error(epoch_at(1), first);
@@ -140,8 +141,8 @@ TEST(RunMetrics, ReferenceByHand) {
 }
 
 TEST(RunMetrics, NoCovarianceGivesNoNees) {
-  RunMetricsCollector collector{Mounting()};
-  Epoch epoch = epoch_at(1);
+  RunMetricsCollector collector{state::Mounting()};
+  state::Epoch epoch = epoch_at(1);
   epoch.covariance.setZero();
   collector.reference_error(epoch, error_at(1, {1, 1, 1}));
   EXPECT_FALSE(collector.metrics().reference->position_nees);
@@ -151,7 +152,7 @@ TEST(RunMetrics, NoCovarianceGivesNoNees) {
 TEST(RunMetrics, AttitudeNeesIsThreeForErrorsOfTheirCovariance) {
   std::mt19937 rng{42};
   std::normal_distribution<double> normal;
-  Mounting mounting;
+  state::Mounting mounting;
   mounting.q_v_b = so3::exp({0.4, 1.2, -2});
   Eigen::Matrix3d root;
   root << 2e-3, 0, 0, 1e-3, 3e-3, 0, -1e-3, 5e-4, 1e-2;
@@ -159,12 +160,12 @@ TEST(RunMetrics, AttitudeNeesIsThreeForErrorsOfTheirCovariance) {
   RunMetricsCollector collector(mounting);
   constexpr int kSamples = 20'000;
   for (int i = 0; i < kSamples; ++i) {
-    Epoch epoch;
+    state::Epoch epoch;
     epoch.covariance.block<3, 3>(6, 6) = root * root.transpose();
     const Eigen::Vector3d dtheta = root * Eigen::Vector3d(normal(rng), normal(rng), normal(rng));
     epoch.q_n_b = so3::from_euler(truth) * mounting.q_v_b * so3::exp(-dtheta);
     const so3::Euler estimate = so3::to_euler(epoch.q_n_b * mounting.q_v_b.conjugate());
-    ReferenceError error;
+    state::ReferenceError error;
     error.euler = Eigen::Vector3d(estimate.roll - truth.roll, estimate.pitch - truth.pitch,
                                   so3::wrap(estimate.heading - truth.heading));
     collector.reference_error(epoch, error);
@@ -180,7 +181,7 @@ TEST(RunMetrics, AttitudeNeesIsThreeForErrorsOfTheirCovariance) {
 }
 
 TEST(RunMetrics, AidsAreCountedAndJudged) {
-  RunMetricsCollector collector{Mounting()};
+  RunMetricsCollector collector{state::Mounting()};
   for (int i = 0; i < 20; ++i) {
     collector.observation({nanoseconds(i), "gnss_velocity", 3, 12, true});
     collector.observation({nanoseconds(i), "speed", 1, 16, true});
@@ -209,8 +210,9 @@ TEST(Trust, AnAidWithSigmasFarTooSmallCondemns) {
 }
 
 TEST(RunMetrics, SlowBlocksByName) {
-  const Layout layout = Layout().add(block::gyro_scale, 1e-3).add({"other", 1, "m"}, 2);
-  Epoch epoch = with_slow_blocks(epoch_at(1), layout);
+  const state::Layout layout =
+      state::Layout().add(state::block::gyro_scale, 1e-3).add({"other", 1, "m"}, 2);
+  state::Epoch epoch = state::with_slow_blocks(epoch_at(1), layout);
   epoch.slow << 1, 2, 3, 4;
   const std::vector<CalibratedBlock> blocks = calibrated_blocks(epoch, layout);
   ASSERT_EQ(blocks.size(), 2u);

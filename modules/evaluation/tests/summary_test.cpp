@@ -6,7 +6,7 @@
 #include "foucault/core/error.h"
 #include "support/drifting_experiment.h"
 
-namespace foucault {
+namespace foucault::evaluation {
 namespace {
 
 using testing::ElementsAre;
@@ -78,4 +78,4 @@ TEST(EvaluationSummary, MethodsWithoutACommonOutage) {
 }
 
 }  // namespace
-}  // namespace foucault
+}  // namespace foucault::evaluation

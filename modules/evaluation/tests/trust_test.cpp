@@ -30,18 +30,19 @@ class MadeUpRun {
       fix(size * Eigen::Vector3d(normal_(rng_), normal_(rng_), normal_(rng_)));
     return *this;
   }
-  MadeUpRun& fix(const Eigen::Vector3d& innovation_n, FixVerdict verdict = FixVerdict::used) {
-    FixResult fix;
+  MadeUpRun& fix(const Eigen::Vector3d& innovation_n,
+                 state::FixVerdict verdict = state::FixVerdict::used) {
+    state::FixResult fix;
     fix.t_ns = nanoseconds(1.7e9 + t_);
     fix.verdict = verdict;
     fix.innovation_n = innovation_n;
     fix.innovation_covariance.setIdentity();
     collector_.fix(fix);
-    Epoch epoch;
+    state::Epoch epoch;
     epoch.t_ns = fix.t_ns;
     return state(epoch);
   }
-  MadeUpRun& state(const Epoch& epoch) {
+  MadeUpRun& state(const state::Epoch& epoch) {
     collector_.epoch(epoch);
     t_ += 1;
     return *this;
@@ -51,7 +52,7 @@ class MadeUpRun {
  private:
   std::mt19937 rng_;
   std::normal_distribution<double> normal_;
-  RunMetricsCollector collector_{Mounting()};
+  RunMetricsCollector collector_{state::Mounting()};
   double t_ = 0;
 };
 
@@ -94,7 +95,7 @@ TEST(Trust, ShortRunsAreJudgedButNotByChance) {
   const Trust few = MadeUpRun().fixes(9, 1).trust();
   EXPECT_FALSE(few.trustworthy);
   EXPECT_THAT(few.reasons, ElementsAre(HasSubstr("only 9 fixes")));
-  EXPECT_FALSE(RunMetricsCollector(Mounting()).metrics().trust.trustworthy);
+  EXPECT_FALSE(RunMetricsCollector(state::Mounting()).metrics().trust.trustworthy);
 }
 
 /// Innovations that stay small for long, as those of a receiver's lasting errors may by chance.
@@ -138,12 +139,12 @@ TEST(Trust, OneLargeInnovationIsNamedForItself) {
 
 TEST(Trust, RejectedFixesDoNotCondemn) {
   MadeUpRun run;
-  for (int i = 0; i < 300; ++i) run.fixes(1, 1).fix({100, 0, 0}, FixVerdict::gated);
+  for (int i = 0; i < 300; ++i) run.fixes(1, 1).fix({100, 0, 0}, state::FixVerdict::gated);
   EXPECT_TRUE(run.trust().trustworthy);
 }
 
 TEST(Trust, AStateThatIsNotFiniteCondemns) {
-  Epoch broken;
+  state::Epoch broken;
   broken.t_ns = nanoseconds(1.7e9 + 500);
   broken.covariance(14, 0) = kNaN;
   EXPECT_FALSE(is_finite(broken));

@@ -11,12 +11,12 @@
 namespace foucault::exports {
 namespace {
 
-Json estimate_json(const Estimate& e) {
+Json estimate_json(const evaluation::Estimate& e) {
   return Object().with("value", e.value).with("low", e.low).with("high", e.high);
 }
 
 Json statistics_json(const std::vector<double>& values) {
-  const Summary s = summarize(values);
+  const evaluation::Summary s = evaluation::summarize(values);
   return Object()
       .with("rms", estimate_json(s.rms))
       .with("mean", estimate_json(s.mean))
@@ -27,45 +27,46 @@ Json statistics_json(const std::vector<double>& values) {
 }
 
 /// RMS over the outages at each mark that all of them reach.
-Json mark_json(const MethodOutages& outages, double DriftValue::*component) {
+Json mark_json(const evaluation::MethodOutages& outages,
+               double evaluation::DriftValue::*component) {
   Json json = Json::object();
-  const std::vector<double>& marks_s = default_drift_marks_s();
+  const std::vector<double>& marks_s = evaluation::default_drift_marks_s();
   for (std::size_t i = 0; i < marks_s.size(); ++i) {
     std::vector<double> values;
-    for (const MethodOutages::Entry& entry : outages.entries) {
+    for (const evaluation::MethodOutages::Entry& entry : outages.entries) {
       if (entry.drift->at_marks[i]) values.push_back((*entry.drift->at_marks[i]).*component);
     }
     if (values.size() != outages.entries.size()) continue;
-    json[fmt::format("{}", marks_s[i])] = root_mean_square(values);
+    json[fmt::format("{}", marks_s[i])] = evaluation::root_mean_square(values);
   }
   return json;
 }
 
-Json method_json(const MethodOutages& outages) {
+Json method_json(const evaluation::MethodOutages& outages) {
   const std::vector<double> horizontal = outages.horizontal_max();
   const std::vector<double> vertical = outages.vertical_max();
   return Object()
       .with("outages", outages.entries.size())
-      .with("horizontal_rmse_m", root_mean_square(horizontal))
-      .with("vertical_rmse_m", root_mean_square(vertical))
+      .with("horizontal_rmse_m", evaluation::root_mean_square(horizontal))
+      .with("vertical_rmse_m", evaluation::root_mean_square(vertical))
       .with("cpu_s", outages.cpu_s)
       .with("missing_outages", outages.missing)
       .with("horizontal_m", statistics_json(horizontal))
       .with("vertical_m", statistics_json(vertical))
-      .with("horizontal_rms_m_after_s", mark_json(outages, &DriftValue::horizontal))
-      .with("vertical_rms_m_after_s", mark_json(outages, &DriftValue::vertical));
+      .with("horizontal_rms_m_after_s", mark_json(outages, &evaluation::DriftValue::horizontal))
+      .with("vertical_rms_m_after_s", mark_json(outages, &evaluation::DriftValue::vertical));
 }
 
-Json methods_json(const std::vector<MethodOutages>& outages, const std::string& group) {
+Json methods_json(const std::vector<evaluation::MethodOutages>& outages, const std::string& group) {
   Json json = Json::object();
-  for (const MethodOutages& o : outages) {
+  for (const evaluation::MethodOutages& o : outages) {
     if (o.group == group && !o.entries.empty()) json[o.method] = method_json(o);
   }
   return json;
 }
 
 Json paired_json(const std::vector<double>& base, const std::vector<double>& other) {
-  const PairedComparison c = compare_paired(base, other);
+  const evaluation::PairedComparison c = evaluation::compare_paired(base, other);
   return Object()
       .with("base_rms_m", c.base_rms)
       .with("other_rms_m", c.other_rms)
@@ -76,11 +77,12 @@ Json paired_json(const std::vector<double>& base, const std::vector<double>& oth
 }
 
 /// Each method against the first one of its group.
-Json comparisons_json(const std::vector<MethodOutages>& outages) {
+Json comparisons_json(const std::vector<evaluation::MethodOutages>& outages) {
   Json json = Json::array();
-  for (const MethodOutages& other : outages) {
-    const auto base = std::find_if(outages.begin(), outages.end(),
-                                   [&](const MethodOutages& o) { return o.group == other.group; });
+  for (const evaluation::MethodOutages& other : outages) {
+    const auto base =
+        std::find_if(outages.begin(), outages.end(),
+                     [&](const evaluation::MethodOutages& o) { return o.group == other.group; });
     if (&*base == &other || other.entries.empty()) continue;
     json.push_back(
         Object()
@@ -94,9 +96,9 @@ Json comparisons_json(const std::vector<MethodOutages>& outages) {
   return json;
 }
 
-Json bin_json(const ProfileBin& bin) {
+Json bin_json(const evaluation::ProfileBin& bin) {
   Json methods = Json::object();
-  for (const BinDrift& drift : bin.methods) {
+  for (const evaluation::BinDrift& drift : bin.methods) {
     methods[drift.method] =
         Object()
             .with("horizontal_rmse_m", estimate_json(drift.horizontal_m))
@@ -113,18 +115,19 @@ Json bin_json(const ProfileBin& bin) {
 }
 
 /// Relative differences are from the first method.
-Json distances_json(const std::vector<DistanceProfile>& profiles) {
+Json distances_json(const std::vector<evaluation::DistanceProfile>& profiles) {
   Json json = Json::array();
-  for (const DistanceProfile& profile : profiles) {
+  for (const evaluation::DistanceProfile& profile : profiles) {
     Json bins = Json::array();
-    for (const ProfileBin& bin : profile.bins) bins.push_back(bin_json(bin));
+    for (const evaluation::ProfileBin& bin : profile.bins) bins.push_back(bin_json(bin));
     json.push_back(Object().with("group", profile.group).with("bins", bins));
   }
   return json;
 }
 
-Json squares_json(const MethodNormalizedDrifts& method, const NormalizedDrift& drift,
-                  const char* axis, const PooledSquares& squares) {
+Json squares_json(const evaluation::MethodNormalizedDrifts& method,
+                  const evaluation::NormalizedDrift& drift, const char* axis,
+                  const evaluation::PooledSquares& squares) {
   return Object()
       .with("group", method.group)
       .with("method", method.method)
@@ -138,10 +141,10 @@ Json squares_json(const MethodNormalizedDrifts& method, const NormalizedDrift& d
 }
 
 /// An entry a group, method, time and axis; mean squares per degree of freedom.
-Json normalized_json(const std::vector<MethodNormalizedDrifts>& methods) {
+Json normalized_json(const std::vector<evaluation::MethodNormalizedDrifts>& methods) {
   Json json = Json::array();
-  for (const MethodNormalizedDrifts& method : methods) {
-    for (const NormalizedDrift& drift : method.times) {
+  for (const evaluation::MethodNormalizedDrifts& method : methods) {
+    for (const evaluation::NormalizedDrift& drift : method.times) {
       if (drift.horizontal.outages > 0) {
         json.push_back(squares_json(method, drift, "horizontal", drift.horizontal));
       }
@@ -153,13 +156,13 @@ Json normalized_json(const std::vector<MethodNormalizedDrifts>& methods) {
   return json;
 }
 
-Json returns_json(const std::vector<PooledReturns>& returns) {
+Json returns_json(const std::vector<evaluation::PooledReturns>& returns) {
   Json json = Json::array();
-  for (const PooledReturns& r : returns) {
+  for (const evaluation::PooledReturns& r : returns) {
     json.push_back(Object()
                        .with("group", r.group)
                        .with("method", r.method)
-                       .with("window_s", kReturnWindowS)
+                       .with("window_s", evaluation::kReturnWindowS)
                        .with("outages", r.outages)
                        .with("horizontal_rms_m", r.rms_horizontal)
                        .with("horizontal_max_m", r.max_horizontal)
@@ -170,13 +173,13 @@ Json returns_json(const std::vector<PooledReturns>& returns) {
   return json;
 }
 
-const char* truth_name(DriftTruth truth) {
-  return truth == DriftTruth::reference ? "reference" : "withheld_fixes";
+const char* truth_name(evaluation::DriftTruth truth) {
+  return truth == evaluation::DriftTruth::reference ? "reference" : "withheld_fixes";
 }
 
-Json runs_json(const std::vector<ExperimentResult>& results) {
+Json runs_json(const std::vector<evaluation::ExperimentResult>& results) {
   Json json = Json::array();
-  for (const ExperimentResult& r : results) {
+  for (const evaluation::ExperimentResult& r : results) {
     json.push_back(Object()
                        .with("recording", r.recording)
                        .with("imu", r.imu)
@@ -191,11 +194,11 @@ Json runs_json(const std::vector<ExperimentResult>& results) {
   return json;
 }
 
-std::string metrics_text(const EvaluationSummary& summary, const Provenance& origin) {
+std::string metrics_text(const evaluation::EvaluationSummary& summary, const Provenance& origin) {
   Json json;
   json["methods"] = methods_json(summary.overall(), summary.overall().front().group);
   Json rows = Json::object();
-  for (const MethodOutages& row : summary.rows()) {
+  for (const evaluation::MethodOutages& row : summary.rows()) {
     if (!rows.contains(row.group)) rows[row.group] = methods_json(summary.rows(), row.group);
   }
   json[summary.row_header() == "IMU" ? "imus" : "recordings"] = rows;
@@ -211,19 +214,19 @@ std::string metrics_text(const EvaluationSummary& summary, const Provenance& ori
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-void write_table(const TextTable& table, const std::filesystem::path& folder,
+void write_table(const evaluation::TextTable& table, const std::filesystem::path& folder,
                  const std::string& name) {
-  write_text_file(folder / (name + ".csv"), to_csv(table));
-  write_text_file(folder / (name + ".md"), to_markdown(table));
+  write_text_file(folder / (name + ".csv"), evaluation::to_csv(table));
+  write_text_file(folder / (name + ".md"), evaluation::to_markdown(table));
 }
 
 }  // namespace
 
-void write_evaluation(const EvaluationSummary& summary, const Provenance& origin,
+void write_evaluation(const evaluation::EvaluationSummary& summary, const Provenance& origin,
                       const std::filesystem::path& folder) {
-  const TextTable drifts =
-      drift_record_table(drift_records(summary.results()), default_drift_marks_s());
-  write_text_file(folder / "drift.csv", to_csv(drifts));
+  const evaluation::TextTable drifts = evaluation::drift_record_table(
+      evaluation::drift_records(summary.results()), evaluation::default_drift_marks_s());
+  write_text_file(folder / "drift.csv", evaluation::to_csv(drifts));
   write_text_file(folder / "metrics.json", metrics_text(summary, origin));
   if (!origin.config.empty()) write_text_file(folder / "config.yaml", origin.config);
   std::filesystem::create_directories(folder / "tables");
@@ -233,9 +236,9 @@ void write_evaluation(const EvaluationSummary& summary, const Provenance& origin
   write_table(summary.normalized_table(), folder / "tables", "normalized_drift");
   write_table(summary.return_table(), folder / "tables", "after_return");
   if (summary.distances().empty()) return;
-  write_table(distance_table(summary.distances(), summary.row_header()), folder / "tables",
-              "distance");
-  write_table(distance_difference_table(summary.distances(), summary.row_header()),
+  write_table(evaluation::distance_table(summary.distances(), summary.row_header()),
+              folder / "tables", "distance");
+  write_table(evaluation::distance_difference_table(summary.distances(), summary.row_header()),
               folder / "tables", "distance_difference");
 }
 

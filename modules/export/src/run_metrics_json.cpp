@@ -18,13 +18,13 @@ double ratio(int64_t part, int64_t whole) {
 }
 
 /// Mean over the axes of the share inside 1, 2, 3 sigma; null if there is none.
-Json inside_json(const InsideSigma& inside) {
+Json inside_json(const evaluation::InsideSigma& inside) {
   if (inside.samples == 0) return nullptr;
   const Eigen::RowVector3d mean = inside.fraction.colwise().mean();
   return Object().with("1_sigma", mean[0]).with("2_sigma", mean[1]).with("3_sigma", mean[2]);
 }
 
-Json gnss_json(const GnssMetrics& gnss) {
+Json gnss_json(const evaluation::GnssMetrics& gnss) {
   const bool exists = gnss.samples > 0;
   const int64_t fixes = gnss.used + gnss.rejected + gnss.corrected;
   const bool compared = gnss.rejected_samples > 0;
@@ -41,7 +41,7 @@ Json gnss_json(const GnssMetrics& gnss) {
       .with("samples", gnss.samples);
 }
 
-Json reference_json(const ReferenceMetrics& reference) {
+Json reference_json(const evaluation::ReferenceMetrics& reference) {
   return Object()
       .with("horizontal_rmse_m", reference.horizontal_rmse)
       .with("vertical_rmse_m", reference.vertical_rmse)
@@ -130,7 +130,7 @@ Json consistency_json(const Consistency& c) {
   return json;
 }
 
-Json aids_json(const Aids& aids) {
+Json aids_json(const evaluation::Aids& aids) {
   Json json = Json::object();
   for (const auto& [name, aid] : aids) {
     json[name] = Object()
@@ -141,9 +141,9 @@ Json aids_json(const Aids& aids) {
   return json;
 }
 
-Json calibration_json(const std::vector<CalibratedBlock>& blocks) {
+Json calibration_json(const std::vector<evaluation::CalibratedBlock>& blocks) {
   Json json = Json::object();
-  for (const CalibratedBlock& b : blocks)
+  for (const evaluation::CalibratedBlock& b : blocks)
     json[std::string(b.block.name)] = Object()
                                           .with("value", b.value)
                                           .with("sigma", b.sigma)
@@ -153,7 +153,8 @@ Json calibration_json(const std::vector<CalibratedBlock>& blocks) {
 
 }  // namespace
 
-Json run_metrics_json(const RunMetrics& m, const std::vector<CalibratedBlock>& calibration) {
+Json run_metrics_json(const evaluation::RunMetrics& m,
+                      const std::vector<evaluation::CalibratedBlock>& calibration) {
   Json json = Object()
                   .with("epochs", m.epochs)
                   .with("duration_s", m.duration_s)

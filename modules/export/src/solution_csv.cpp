@@ -33,8 +33,8 @@ std::string csv_header() {
          "sd_accel_bias_x_mgal,sd_accel_bias_y_mgal,sd_accel_bias_z_mgal\n";
 }
 
-std::string csv_row(const Epoch& epoch, const Mounting& mounting) {
-  const VehicleAttitude attitude = vehicle_attitude(epoch, mounting);
+std::string csv_row(const state::Epoch& epoch, const state::Mounting& mounting) {
+  const state::VehicleAttitude attitude = state::vehicle_attitude(epoch, mounting);
   const so3::Euler& euler = attitude.euler;
   std::string row = units::format_stamp(epoch.t_ns);
   row.reserve(512);
@@ -45,16 +45,16 @@ std::string csv_row(const Epoch& epoch, const Mounting& mounting) {
   append(row, Eigen::Vector3d(euler.roll, euler.pitch, euler.heading) * units::kDegrees, 7);
   append(row, epoch.bias.gyro * units::kDegreesPerHour, 5);
   append(row, epoch.bias.accel * units::kMilligals, 4);
-  append_sigmas(row, epoch.sigma_of(block::position));
-  append_sigmas(row, epoch.sigma_of(block::velocity));
+  append_sigmas(row, epoch.sigma_of(state::block::position));
+  append_sigmas(row, epoch.sigma_of(state::block::velocity));
   append_sigmas(row, attitude.sigma * units::kDegrees);
-  append_sigmas(row, epoch.sigma_of(block::gyro_bias) * units::kDegreesPerHour);
-  append_sigmas(row, epoch.sigma_of(block::accel_bias) * units::kMilligals);
+  append_sigmas(row, epoch.sigma_of(state::block::gyro_bias) * units::kDegreesPerHour);
+  append_sigmas(row, epoch.sigma_of(state::block::accel_bias) * units::kMilligals);
   row += '\n';
   return row;
 }
 
-SolutionCsv::SolutionCsv(const std::filesystem::path& path, const Mounting& mounting)
+SolutionCsv::SolutionCsv(const std::filesystem::path& path, const state::Mounting& mounting)
     : mounting_(mounting), file_(path) {
   file_.write(csv_header());
 }

@@ -9,7 +9,8 @@
 
 namespace foucault::exports {
 
-std::string tum_row(const Epoch& epoch, const Mounting& mounting, const LocalFrame& frame) {
+std::string tum_row(const state::Epoch& epoch, const state::Mounting& mounting,
+                    const geodesy::LocalFrame& frame) {
   const Eigen::Quaterniond q_enu_ned(0, std::sqrt(0.5), std::sqrt(0.5), 0);
   const Eigen::Quaterniond q_frd_flu(0, 1, 0, 0);
   const Eigen::Vector3d p_w = frame.to_local(epoch.position);
@@ -21,10 +22,10 @@ std::string tum_row(const Epoch& epoch, const Mounting& mounting, const LocalFra
                      q.z(), q.w());
 }
 
-SolutionTum::SolutionTum(const std::filesystem::path& path, const Mounting& mounting)
+SolutionTum::SolutionTum(const std::filesystem::path& path, const state::Mounting& mounting)
     : mounting_(mounting), file_(path) {}
 
-void SolutionTum::epoch(const Epoch& epoch) {
+void SolutionTum::epoch(const state::Epoch& epoch) {
   if (!frame_) frame_.emplace(epoch.position);
   file_.write(tum_row(epoch, mounting_, *frame_));
 }

@@ -6,13 +6,14 @@
 
 namespace foucault::exports {
 
-SolutionWriter::SolutionWriter(const std::filesystem::path& folder, const Mounting& mounting) {
+SolutionWriter::SolutionWriter(const std::filesystem::path& folder,
+                               const state::Mounting& mounting) {
   files_.push_back(std::make_unique<SolutionCsv>(folder / "solution.csv", mounting));
   files_.push_back(std::make_unique<SolutionTum>(folder / "solution.tum", mounting));
   files_.push_back(std::make_unique<TrackKml>(folder / "solution.kml"));
 }
 
-void SolutionWriter::epoch(const Epoch& epoch) {
+void SolutionWriter::epoch(const state::Epoch& epoch) {
   for (const auto& file : files_) file->epoch(epoch);
 }
 

@@ -30,8 +30,8 @@ constexpr std::array<AccuracyClass, 4> kClasses{
      {"above-2m", std::numeric_limits<double>::infinity(), "ff2828d2"}}};
 
 /// sqrt of the trace of the horizontal block [m].
-double horizontal_sigma(const Epoch& epoch) {
-  return epoch.sigma_of(block::position).head<2>().norm();
+double horizontal_sigma(const state::Epoch& epoch) {
+  return epoch.sigma_of(state::block::position).head<2>().norm();
 }
 
 std::size_t class_of(double sigma) {
@@ -67,7 +67,7 @@ std::string TrackKml::coordinates(const Vertex& vertex) {
                      vertex.height);
 }
 
-void TrackKml::epoch(const Epoch& epoch) {
+void TrackKml::epoch(const state::Epoch& epoch) {
   if (epoch.t_ns < next_vertex_ns_) return;
   next_vertex_ns_ = epoch.t_ns + kVertexInterval;
   const Vertex next = vertex(epoch.position);
@@ -116,7 +116,7 @@ void TrackKml::end_line() {
   line_class_.reset();
 }
 
-void TrackKml::mark(const Epoch& epoch) {
+void TrackKml::mark(const state::Epoch& epoch) {
   next_mark_ns_ = epoch.t_ns + kMarkInterval;
   file_.write(
       fmt::format("<Placemark><name>{}</name><description>speed {:.1f} m/s, horizontal "

@@ -13,7 +13,8 @@ namespace {
 
 TEST(EvaluationFiles, HoldTheSummary) {
   const test::TestFolder folder;
-  const EvaluationSummary summary(run_experiments(test::drifting_runs(), 2));
+  const evaluation::EvaluationSummary summary(
+      evaluation::run_experiments(test::drifting_runs(), 2));
   write_evaluation(summary, {"foucault evaluate", "imu: {}\n", "1"}, folder.path());
 
   const auto json = nlohmann::json::parse(folder.text("metrics.json"));
@@ -37,13 +38,14 @@ TEST(EvaluationFiles, HoldTheSummary) {
 /// As if the outages lay on the way out.
 TEST(EvaluationFiles, DistancesOfATripThatGoesFar) {
   const test::TestFolder folder;
-  std::vector<ExperimentResult> results = run_experiments(test::drifting_runs(), 2);
-  for (ExperimentResult& result : results) {
+  std::vector<evaluation::ExperimentResult> results =
+      evaluation::run_experiments(test::drifting_runs(), 2);
+  for (evaluation::ExperimentResult& result : results) {
     result.imu = result.recording;
     double distance_m = 0;
-    for (OutageDrift& drift : result.run.drifts) drift.distance_m = distance_m += 20e3;
+    for (evaluation::OutageDrift& drift : result.run.drifts) drift.distance_m = distance_m += 20e3;
   }
-  const EvaluationSummary summary(std::move(results));
+  const evaluation::EvaluationSummary summary(std::move(results));
   write_evaluation(summary, {"", "", "1"}, folder.path());
   const auto json = nlohmann::json::parse(folder.text("metrics.json"));
   EXPECT_EQ(json["imus"].size(), 2u);

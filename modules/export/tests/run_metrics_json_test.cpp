@@ -26,7 +26,7 @@ TEST(RunMetricsJson, WhatDoesNotExistIsNull) {
 }
 
 TEST(RunMetricsJson, NumbersInTheUnitsOfTheirNames) {
-  RunMetrics metrics;
+  evaluation::RunMetrics metrics;
   metrics.gnss.used = 3;
   metrics.gnss.rejected = 1;
   metrics.gnss.samples = 3;
@@ -34,7 +34,7 @@ TEST(RunMetricsJson, NumbersInTheUnitsOfTheirNames) {
   metrics.gnss.innovation_rms_n = {1, 2, 3};
   metrics.aids["wheel_speed"] = {1, 2, 0, 3.0};
   metrics.aids["unused"] = {};
-  ReferenceMetrics reference;
+  evaluation::ReferenceMetrics reference;
   reference.roll_rmse = 0.1;
   reference.position_inside.samples = 1;
   reference.position_inside.fraction.setConstant(0.5);
@@ -47,7 +47,7 @@ TEST(RunMetricsJson, NumbersInTheUnitsOfTheirNames) {
   c.innovations[0].samples = 3;
   c.autocorrelation.lag.push_back({0.1, 0.2, 0.3});
   c.position_nees = c.velocity_nees = c.attitude_nees = c.nis;
-  const Json json = run_metrics_json(metrics, {{block::gyro_bias, {1, 2, 3}, {4, 5, 6}}});
+  const Json json = run_metrics_json(metrics, {{state::block::gyro_bias, {1, 2, 3}, {4, 5, 6}}});
 
   EXPECT_EQ(json["gnss"]["rejected_share"], 0.25);
   EXPECT_EQ(json["gnss"]["innovation_rms_m"]["down"], 3);

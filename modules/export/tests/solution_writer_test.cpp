@@ -28,22 +28,22 @@ std::vector<std::string> cells(const std::string& line) {
   return result;
 }
 
-double column(const Epoch& epoch, const Mounting& mounting, const std::string& name) {
+double column(const state::Epoch& epoch, const state::Mounting& mounting, const std::string& name) {
   const std::vector<std::string> names = cells(csv_header().substr(0, csv_header().size() - 1));
   const auto found = std::find(names.begin(), names.end(), name);
   EXPECT_NE(found, names.end()) << name;
   return std::stod(cells(csv_row(epoch, mounting)).at(found - names.begin()));
 }
 
-Epoch some_epoch() {
-  Epoch epoch;
+state::Epoch some_epoch() {
+  state::Epoch epoch;
   epoch.t_ns = 1'700'000'000'123'456'789;
   epoch.position = {0.531234567890123, 1.998765432101234, 23.45678};
   epoch.velocity_n = {1, -2, 0.5};
   epoch.q_n_b = so3::from_euler({0.1, -0.2, 5.0});
   epoch.bias.gyro = {1e-5, -2e-5, 3e-5};
   epoch.bias.accel = {1e-3, -2e-3, 3e-3};
-  for (int i = 0; i < kNodeSize; ++i) epoch.covariance(i, i) = (i + 1) * (i + 1) * 1e-8;
+  for (int i = 0; i < state::kNodeSize; ++i) epoch.covariance(i, i) = (i + 1) * (i + 1) * 1e-8;
   return epoch;
 }
 
@@ -73,7 +73,7 @@ TEST(SolutionCsv, BeginsWithTheContractsColumns) {
 }
 
 TEST(SolutionCsv, KeepsStampAndPosition) {
-  const Epoch epoch = some_epoch();
+  const state::Epoch epoch = some_epoch();
   EXPECT_EQ(cells(csv_row(epoch, {})).front(), "1700000000.123456789");
   // Half of the last digit written, 1e-11 deg = 1 um.
   EXPECT_NEAR(column(epoch, {}, "lat_deg"), epoch.position.latitude * units::kDegrees, 5.1e-12);
@@ -83,9 +83,9 @@ TEST(SolutionCsv, KeepsStampAndPosition) {
 
 TEST(SolutionCsv, GivesTheVehiclesAttitudeNotTheImus) {
   const so3::Euler truth{0.05, -0.1, 4.0};
-  Mounting mounting;
+  state::Mounting mounting;
   mounting.q_v_b = so3::from_euler({3.0, -0.1, 1.5});
-  Epoch epoch = some_epoch();
+  state::Epoch epoch = some_epoch();
   epoch.q_n_b = so3::from_euler(truth) * mounting.q_v_b;
   EXPECT_NEAR(column(epoch, mounting, "roll_deg"), truth.roll * units::kDegrees, 1e-6);
   EXPECT_NEAR(column(epoch, mounting, "pitch_deg"), truth.pitch * units::kDegrees, 1e-6);
@@ -93,7 +93,7 @@ TEST(SolutionCsv, GivesTheVehiclesAttitudeNotTheImus) {
 }
 
 TEST(SolutionCsv, TurnsSigmasAndBiasesIntoTheUnitsOfTheirNames) {
-  const Epoch epoch = some_epoch();
+  const state::Epoch epoch = some_epoch();
   EXPECT_NEAR(column(epoch, {}, "sd_down_m"), 3e-4, 1e-9);
   EXPECT_NEAR(column(epoch, {}, "sd_v_north_m_s"), 4e-4, 1e-9);
   EXPECT_NEAR(column(epoch, {}, "gyro_bias_y_deg_h"), -2e-5 * 180 / M_PI * 3600, 1e-5);
@@ -103,8 +103,8 @@ TEST(SolutionCsv, TurnsSigmasAndBiasesIntoTheUnitsOfTheirNames) {
 }
 
 TEST(SolutionTum, IsEastNorthUpAndForwardLeftUp) {
-  Epoch epoch = some_epoch();
-  const LocalFrame frame(epoch.position);
+  state::Epoch epoch = some_epoch();
+  const geodesy::LocalFrame frame(epoch.position);
   const Eigen::Vector3d ned(120, -30, -7);
   epoch.position = frame.to_geodetic(ned);
   epoch.q_n_b = so3::from_euler({0, 0, M_PI / 2});  // nose to the east
@@ -123,7 +123,7 @@ TEST(SolutionTum, IsEastNorthUpAndForwardLeftUp) {
 TEST(SolutionWriter, WritesARowForEveryEpochAndAWholeKml) {
   const TestFolder folder;
   SolutionWriter writer(folder.path(), {});
-  Epoch epoch = some_epoch();
+  state::Epoch epoch = some_epoch();
   constexpr int kEpochs = 300;
   for (int i = 0; i < kEpochs; ++i) {
     epoch.t_ns += 1'000'000'000;
@@ -165,7 +165,7 @@ TEST(SolutionWriter, TheTrackIsCutAtTheAntimeridian) {
   for (const double side : {1.0, -1.0}) {
     const TestFolder folder;
     SolutionWriter writer(folder.path(), {});
-    Epoch epoch = some_epoch();
+    state::Epoch epoch = some_epoch();
     for (int i = 0; i <= 10; ++i) {
       epoch.t_ns += 1'000'000'000;
       epoch.position.longitude = so3::wrap(side * (179.9 + 0.03 * i) / units::kDegrees);

@@ -9,8 +9,8 @@ namespace foucault::fgo {
 
 namespace {
 
-NavState without_slow(const NavState& x) {
-  NavState out = x;
+state::NavState without_slow(const state::NavState& x) {
+  state::NavState out = x;
   out.slow.resize(0);
   return out;
 }
@@ -23,31 +23,33 @@ void BatchOptions::fields(ConfigFields& f) {
          "forward method that gives the batch its first estimate");
 }
 
-PreintegrationModel BatchOptions::preintegration_model() const {
-  if (model == "rough") return PreintegrationModel::rough;
-  return model == "refined" ? PreintegrationModel::refined : PreintegrationModel::full;
+preintegration::PreintegrationModel BatchOptions::preintegration_model() const {
+  if (model == "rough") return preintegration::PreintegrationModel::rough;
+  return model == "refined" ? preintegration::PreintegrationModel::refined
+                            : preintegration::PreintegrationModel::full;
 }
 
-BatchRecorder::BatchRecorder(std::unique_ptr<Navigator> forward, const FgoOptions& options,
-                             PreintegrationModel model, const ImuNoise& noise, const Layout& layout)
+BatchRecorder::BatchRecorder(std::unique_ptr<measurement::Navigator> forward,
+                             const FgoOptions& options, preintegration::PreintegrationModel model,
+                             const imu::ImuNoise& noise, const state::Layout& layout)
     : forward_(std::move(forward)),
       options_(options),
-      context_{LocalFrame(Geodetic{}), model, as_constants(layout)},
+      context_{geodesy::LocalFrame(Geodetic{}), model, as_constants(layout)},
       noise_(noise) {
   require_noise(noise);
 }
 
-void BatchRecorder::start(const Epoch& initial) {
+void BatchRecorder::start(const state::Epoch& initial) {
   if (integrator_) mark();
   forward_->start(initial);
-  if (chains_.empty()) context_.frame = LocalFrame(initial.position);
+  if (chains_.empty()) context_.frame = geodesy::LocalFrame(initial.position);
   integrator_.reset();
   chains_.emplace_back().prior = prior_of(initial);
   add_node(initial);
 }
 
-SquareRootPrior BatchRecorder::prior_of(const Epoch& epoch) const {
-  const Epoch whole = with_slow_blocks(epoch, context_.layout);
+SquareRootPrior BatchRecorder::prior_of(const state::Epoch& epoch) const {
+  const state::Epoch whole = state::with_slow_blocks(epoch, context_.layout);
   return prior_from_covariance(to_node(whole, context_), whole.slow,
                                turned(whole.covariance, context_.frame.R_w_n(whole.position)));
 }
@@ -59,10 +61,10 @@ void BatchRecorder::propagate(const ImuIncrement& increment) {
   open_.increments.push_back(increment);
 }
 
-void BatchRecorder::update(const ObservationPtr& observation) {
+void BatchRecorder::update(const measurement::ObservationPtr& observation) {
   mark();
   forward_->update(observation);
-  const Epoch now = forward_->epoch();
+  const state::Epoch now = forward_->epoch();
   BatchNode& node = chains_.back().nodes.back();
   node.observations.push_back({observation, rates_.gyro_b});
   node.x = to_node(now, context_);
@@ -71,19 +73,19 @@ void BatchRecorder::update(const ObservationPtr& observation) {
 }
 
 /// The interval that ends here gets the noise, or the prior if none does.
-void BatchRecorder::loosen(const NodeMatrix& added) {
+void BatchRecorder::loosen(const state::NodeMatrix& added) {
   mark();
   forward_->loosen(added);
   BatchChain& chain = chains_.back();
-  const Epoch now = forward_->epoch();
-  const NodeState& x = chain.nodes.back().x;
+  const state::Epoch now = forward_->epoch();
+  const state::NodeState& x = chain.nodes.back().x;
   if (chain.intervals.empty()) {
     chain.prior = prior_of(now);
     return;
   }
-  const NodeMatrix added_w = turned(added, context_.frame.R_w_n(now.position));
-  foucault::loosen(chain.intervals.back(), chain.nodes[chain.nodes.size() - 2].x, x, added_w,
-                   context_.layout);
+  const state::NodeMatrix added_w = turned(added, context_.frame.R_w_n(now.position));
+  fgo::loosen(chain.intervals.back(), chain.nodes[chain.nodes.size() - 2].x, x, added_w,
+              context_.layout);
 }
 
 void BatchRecorder::hold() {
@@ -99,7 +101,7 @@ std::size_t BatchRecorder::mark() {
   return passages_.size() - 1;
 }
 
-void BatchRecorder::add_node(const Epoch& now) {
+void BatchRecorder::add_node(const state::Epoch& now) {
   BatchNode& node = chains_.back().nodes.emplace_back();
   node.t_ns = now.t_ns;
   node.x = to_node(now, context_);
@@ -107,31 +109,33 @@ void BatchRecorder::add_node(const Epoch& now) {
   begin_interval(now);
 }
 
-void BatchRecorder::begin_interval(const Epoch& now) {
+void BatchRecorder::begin_interval(const state::Epoch& now) {
   open_ = ImuInterval{};
   if (integrator_) open_.before = integrator_->previous();
-  earth_ = earth_model(context_.model, context_.frame, chains_.back().nodes.back().x.p_w_b);
-  integrator_.emplace(noise_, now.bias, now.t_ns, open_.before,
-                      scale_of(context_.layout, with_slow_blocks(now, context_.layout).slow));
+  earth_ = preintegration::earth_model(context_.model, context_.frame,
+                                       chains_.back().nodes.back().x.p_w_b);
+  integrator_.emplace(
+      noise_, now.bias, now.t_ns, open_.before,
+      scale_of(context_.layout, state::with_slow_blocks(now, context_.layout).slow));
 }
 
 /// The increments are kept if five sigmas of the bias may turn the interval too far.
 void BatchRecorder::close_interval() {
-  const Preintegration pre = measured(*integrator_, context_.model);
-  const double bias_sigma = forward_->epoch().sigma_of(block::gyro_bias).maxCoeff();
+  const preintegration::Preintegration pre = measured(*integrator_, context_.model);
+  const double bias_sigma = forward_->epoch().sigma_of(state::block::gyro_bias).maxCoeff();
   if (5 * bias_sigma * pre.dt < kReintegrationAngle) open_.increments.clear();
   open_.increments.shrink_to_fit();
   open_.factor = std::make_unique<PreintegrationFactor>(pre, earth_, context_.layout);
   chains_.back().intervals.push_back(std::move(open_));
 }
 
-std::deque<SmoothedEpoch> BatchRecorder::smoothed() {
-  std::deque<SmoothedEpoch> out;
+std::deque<measurement::SmoothedEpoch> BatchRecorder::smoothed() {
+  std::deque<measurement::SmoothedEpoch> out;
   for (BatchChain& chain : chains_) {
     BatchSolution solution = solve(chain, context_, options_, noise_);
     for (std::size_t k = 0; k < chain.nodes.size(); ++k) {
-      const Epoch epoch = to_epoch(chain.nodes[k].t_ns, solution.x[k], solution.slow,
-                                   solution.covariance_w[k].full(), context_);
+      const state::Epoch epoch = to_epoch(chain.nodes[k].t_ns, solution.x[k], solution.slow,
+                                          solution.covariance_w[k].full(), context_);
       solution.covariance_w[k] = {};
       out.push_back(smoothed_at(passages_[out.size()], epoch));
     }
@@ -139,10 +143,11 @@ std::deque<SmoothedEpoch> BatchRecorder::smoothed() {
   return out;
 }
 
-SmoothedEpoch BatchRecorder::smoothed_at(const Passage& passage, const Epoch& epoch) const {
-  const NavState state = without_slow(epoch);
-  return {epoch, PackedSymmetric(epoch.covariance), boxminus(state, passage.predicted),
-          boxminus(state, passage.filtered)};
+measurement::SmoothedEpoch BatchRecorder::smoothed_at(const Passage& passage,
+                                                      const state::Epoch& epoch) const {
+  const state::NavState state = without_slow(epoch);
+  return {epoch, state::PackedSymmetric(epoch.covariance),
+          state::boxminus(state, passage.predicted), state::boxminus(state, passage.filtered)};
 }
 
 }  // namespace foucault::fgo

@@ -67,23 +67,23 @@ class BatchSolver {
 
   /// New factors where biases or places have left those of the first estimate. True if there were
   /// any.
-  bool renew_factors(const ImuNoise& noise);
+  bool renew_factors(const imu::ImuNoise& noise);
 
   BatchSolution solution();
 
  private:
   struct States {
-    std::vector<NodeState> x;
-    SlowVector slow;
+    std::vector<state::NodeState> x;
+    state::SlowVector slow;
   };
   /// What is known of the newest node when all before it are eliminated.
   struct Front {
     NodeInformation information;
-    StateVector squares;  ///< of the columns' norms
+    state::StateVector squares;  ///< of the columns' norms
   };
   /// An eliminated node.
   struct Pivot : Conditional {
-    NodeVector damping;
+    state::NodeVector damping;
   };
 
   bool plain_steps();
@@ -96,14 +96,14 @@ class BatchSolver {
   Pivot advance(std::size_t k, Front& front) const;
   void add_own(std::size_t k, Front& front) const;
   void add(const ObservationRows& z, Front& front) const;
-  NodeVector damp_node(Front& front) const;
-  StateVector damp_all(Front& front) const;
-  void damp(const StateVector& diagonal, Front& front) const;
+  state::NodeVector damp_node(Front& front) const;
+  state::StateVector damp_all(Front& front) const;
+  void damp(const state::StateVector& diagonal, Front& front) const;
   Front sweep();
   template <class Each>
   void go_back(const Each& each);
 
-  bool reintegrate_turned(std::size_t k, const ImuNoise& noise);
+  bool reintegrate_turned(std::size_t k, const imu::ImuNoise& noise);
   bool move_earth(std::size_t k);
 
   BatchChain& chain_;
@@ -122,7 +122,7 @@ class BatchSolver {
 
 BatchSolver::Front BatchSolver::first_front() const {
   const Eigen::Index slow = at_.slow.size();
-  Front front{NodeInformation(slow), StateVector::Zero(state_size(slow))};
+  Front front{NodeInformation(slow), state::StateVector::Zero(state::state_size(slow))};
   const StateRows prior = prior_.linearize(at_.x[0], at_.slow);
   front.information.add(prior);
   front.squares += prior.J.colwise().squaredNorm().transpose();
@@ -146,34 +146,34 @@ BatchSolver::Pivot BatchSolver::advance(std::size_t k, Front& front) const {
   const IntervalRows interval =
       chain_.intervals[k].factor->linearize(at_.x[k], at_.x[k + 1], at_.slow);
   const Eigen::Index slow = at_.slow.size();
-  node_part(front.squares) += interval.J_x0.colwise().squaredNorm().transpose();
+  state::node_part(front.squares) += interval.J_x0.colwise().squaredNorm().transpose();
   front.squares.tail(slow) += interval.J_slow.colwise().squaredNorm().transpose();
-  const NodeVector damping = damp_node(front);
+  const state::NodeVector damping = damp_node(front);
   const Elimination elimination = eliminate(front.information, interval);
   front.information = elimination.rest;
-  node_part(front.squares) = interval.J_x1.colwise().squaredNorm().transpose();
+  state::node_part(front.squares) = interval.J_x1.colwise().squaredNorm().transpose();
   add_own(k + 1, front);
   return {elimination, damping};
 }
 
-NodeVector BatchSolver::damp_node(Front& front) const {
-  StateVector diagonal = StateVector::Zero(front.squares.size());
-  if (!region_) return node_part(diagonal);
-  node_part(diagonal) = (node_part(front.squares) / region_->radius).cwiseSqrt();
+state::NodeVector BatchSolver::damp_node(Front& front) const {
+  state::StateVector diagonal = state::StateVector::Zero(front.squares.size());
+  if (!region_) return state::node_part(diagonal);
+  state::node_part(diagonal) = (state::node_part(front.squares) / region_->radius).cwiseSqrt();
   damp(diagonal, front);
-  return node_part(diagonal);
+  return state::node_part(diagonal);
 }
 
-StateVector BatchSolver::damp_all(Front& front) const {
-  if (!region_) return StateVector::Zero(front.squares.size());
-  const StateVector diagonal = (front.squares / region_->radius).cwiseSqrt();
+state::StateVector BatchSolver::damp_all(Front& front) const {
+  if (!region_) return state::StateVector::Zero(front.squares.size());
+  const state::StateVector diagonal = (front.squares / region_->radius).cwiseSqrt();
   damp(diagonal, front);
   return diagonal;
 }
 
-void BatchSolver::damp(const StateVector& diagonal, Front& front) const {
+void BatchSolver::damp(const state::StateVector& diagonal, Front& front) const {
   const Eigen::Index size = diagonal.size();
-  StateRows rows{StateVector::Zero(size), StateMatrix::Zero(size, size)};
+  StateRows rows{state::StateVector::Zero(size), state::StateMatrix::Zero(size, size)};
   rows.J.diagonal() = diagonal;
   front.information.add(rows);
 }
@@ -218,18 +218,18 @@ double BatchSolver::cost(const States& at) const {
 /// Goes to next_. By how much the cost falls if it is as quadratic as here.
 double BatchSolver::step() {
   Front front = sweep();
-  const StateVector damping = damp_all(front);
-  StateVector d = front.information.solution();
+  const state::StateVector damping = damp_all(front);
+  state::StateVector d = front.information.solution();
   const Eigen::Index slow = at_.slow.size();
   double twice = front.information.r.squaredNorm() + damping.cwiseProduct(d).squaredNorm();
   next_.x.resize(at_.x.size());
-  next_.x.back() = boxplus(at_.x.back(), NodeVector(node_part(d)));
+  next_.x.back() = state::boxplus(at_.x.back(), state::NodeVector(state::node_part(d)));
   next_.slow = at_.slow + d.tail(slow);
   go_back([&](std::size_t k, const Pivot& pivot) {
-    const NodeVector own = pivot.eliminated(d);
-    next_.x[k] = boxplus(at_.x[k], own);
+    const state::NodeVector own = pivot.eliminated(d);
+    next_.x[k] = state::boxplus(at_.x[k], own);
     twice += pivot.a.squaredNorm() + pivot.damping.cwiseProduct(own).squaredNorm();
-    node_part(d) = own;
+    state::node_part(d) = own;
   });
   return 0.5 * twice;
 }
@@ -287,17 +287,18 @@ bool BatchSolver::take_if_better(double predicted, double& share) {
 
 // Factors and covariances ------------------------------------------------------------------------
 
-bool BatchSolver::renew_factors(const ImuNoise& noise) {
+bool BatchSolver::renew_factors(const imu::ImuNoise& noise) {
   bool renewed = false;
   for (std::size_t k = 0; k < chain_.intervals.size(); ++k) {
     const bool integrated = reintegrate_turned(k, noise);
-    const bool placed = context_.model == PreintegrationModel::full && move_earth(k);
+    const bool placed =
+        context_.model == preintegration::PreintegrationModel::full && move_earth(k);
     renewed = renewed || integrated || placed;
   }
   return renewed;
 }
 
-bool BatchSolver::reintegrate_turned(std::size_t k, const ImuNoise& noise) {
+bool BatchSolver::reintegrate_turned(std::size_t k, const imu::ImuNoise& noise) {
   ImuInterval& interval = chain_.intervals[k];
   if (interval.increments.empty()) return false;
   if (!has_turned(interval, at_.x[k].bias, at_.slow)) return false;
@@ -310,19 +311,19 @@ bool BatchSolver::move_earth(std::size_t k) {
   PreintegrationFactor& factor = *chain_.intervals[k].factor;
   const Eigen::Vector3d& p_w = at_.x[k].p_w_b;
   if ((p_w - factor.earth().p_ref).norm() < kGravityIsLinear) return false;
-  factor.set_earth(earth_model(context_.model, context_.frame, p_w));
+  factor.set_earth(preintegration::earth_model(context_.model, context_.frame, p_w));
   return true;
 }
 
 BatchSolution BatchSolver::solution() {
   const StageTimer timer(Stage::covariance);
   next_ = {};
-  std::vector<PackedSymmetric> covariances(at_.x.size());
-  StateMatrix P = covariance(sweep().information);
-  covariances.back() = PackedSymmetric(P);
+  std::vector<state::PackedSymmetric> covariances(at_.x.size());
+  state::StateMatrix P = covariance(sweep().information);
+  covariances.back() = state::PackedSymmetric(P);
   go_back([&](std::size_t k, const Pivot& pivot) {
     P = pivot.covariance(P);
-    covariances[k] = PackedSymmetric(P);
+    covariances[k] = state::PackedSymmetric(P);
     chain_.intervals.pop_back();  // its memory goes to what is still to come
   });
   return {std::move(at_.x), at_.slow, std::move(covariances)};
@@ -331,7 +332,7 @@ BatchSolution BatchSolver::solution() {
 }  // namespace
 
 BatchSolution solve(BatchChain& chain, const GraphContext& context, const FgoOptions& options,
-                    const ImuNoise& noise) {
+                    const imu::ImuNoise& noise) {
   BatchSolver solver(chain, context, options);
   solver.optimize();
   for (int round = 0; round < kRounds && solver.renew_factors(noise); ++round) solver.optimize();

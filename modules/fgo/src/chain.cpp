@@ -14,7 +14,7 @@ using Eigen::Index;
 /// Reflects `length` rows from the diagonal of column k down so that nothing is left below it.
 template <int kLength, class Rows>
 void reflect_column(Rows& rows, Index k, Index length) {
-  constexpr int kMostLength = kLength == Dynamic ? kMostSize + 1 : kLength;
+  constexpr int kMostLength = kLength == Dynamic ? state::kMostSize + 1 : kLength;
   Eigen::Matrix<double, kLength, 1, Eigen::ColMajor, kMostLength, 1> v =
       rows.col(k).template segment<kLength>(k, length);
   const double norm = std::copysign(v.norm(), v[0]);
@@ -41,15 +41,16 @@ void reflect(Rows& rows, Index dense, Index pivots) {
 /// Reflects a node's rows into an upper triangle.
 template <class Rows, std::size_t... k>
 void reflect_node(Rows&& rows, std::index_sequence<k...> /*columns*/) {
-  (reflect_column<kNodeSize - static_cast<int>(k)>(rows, k, kNodeSize - k), ...);
+  (reflect_column<state::kNodeSize - static_cast<int>(k)>(rows, k, state::kNodeSize - k), ...);
 }
 
 /// Takes r + J d to what is known of d.
 template <int kDense, class Jacobian, class Residual>
 void put_on_top(const Jacobian& J, const Residual& r, NodeInformation& information) {
-  constexpr int kMostDense = kDense == Dynamic ? kMostSize : kDense;
+  constexpr int kMostDense = kDense == Dynamic ? state::kMostSize : kDense;
   const Index size = information.r.size();
-  Eigen::Matrix<double, Dynamic, Dynamic, Eigen::ColMajor, kMostDense + kMostSize, kMostSize + 1>
+  Eigen::Matrix<double, Dynamic, Dynamic, Eigen::ColMajor, kMostDense + state::kMostSize,
+                state::kMostSize + 1>
       rows(r.size() + size, size + 1);
   rows.topLeftCorner(r.size(), size) = J;
   rows.col(size).head(r.size()) = r;
@@ -73,8 +74,8 @@ void throw_if_undetermined(const Triangle& R) {
 }  // namespace
 
 NodeInformation::NodeInformation(Index slow)
-    : S(StateMatrix::Zero(kNodeSize + slow, kNodeSize + slow)),
-      r(StateVector::Zero(kNodeSize + slow)) {}
+    : S(state::StateMatrix::Zero(state::kNodeSize + slow, state::kNodeSize + slow)),
+      r(state::StateVector::Zero(state::kNodeSize + slow)) {}
 
 void NodeInformation::add(const StateRows& rows) { put_on_top<Dynamic>(rows.J, rows.r, *this); }
 
@@ -87,43 +88,44 @@ void NodeInformation::add(const ObservationRows& rows, double weight) {
   }
 }
 
-void NodeInformation::move_border(const SlowVector& moved) {
+void NodeInformation::move_border(const state::SlowVector& moved) {
   if (moved.size() > 0) r += S.rightCols(moved.size()) * moved;
 }
 
-StateVector NodeInformation::solution() const {
+state::StateVector NodeInformation::solution() const {
   throw_if_undetermined(S);
   return S.triangularView<Eigen::Upper>().solve(-r);
 }
 
-NodeVector Conditional::eliminated(const StateVector& next) const {
+state::NodeVector Conditional::eliminated(const state::StateVector& next) const {
   return R.triangularView<Eigen::Upper>().solve(-a - A * next);
 }
 
-StateMatrix Conditional::covariance(const StateMatrix& next) const {
+state::StateMatrix Conditional::covariance(const state::StateMatrix& next) const {
   const Index size = next.rows();
-  const Index slow = size - kNodeSize;
+  const Index slow = size - state::kNodeSize;
   const auto R_upper = R.triangularView<Eigen::Upper>();
-  const NodeByState F = -R_upper.solve(A);
-  const NodeMatrix root = R_upper.solve(NodeMatrix::Identity());
-  const NodeByState FP = F * next;
-  StateMatrix P(size, size);
+  const state::NodeByState F = -R_upper.solve(A);
+  const state::NodeMatrix root = R_upper.solve(state::NodeMatrix::Identity());
+  const state::NodeByState FP = F * next;
+  state::StateMatrix P(size, size);
   P.bottomRightCorner(slow, slow) = next.bottomRightCorner(slow, slow);
-  P.topRightCorner(kNodeSize, slow) = FP.rightCols(slow);
-  P.bottomLeftCorner(slow, kNodeSize) = FP.rightCols(slow).transpose();
-  const NodeMatrix node = root * root.transpose() + FP * F.transpose();
-  node_part(P) = 0.5 * (node + node.transpose());
+  P.topRightCorner(state::kNodeSize, slow) = FP.rightCols(slow);
+  P.bottomLeftCorner(slow, state::kNodeSize) = FP.rightCols(slow).transpose();
+  const state::NodeMatrix node = root * root.transpose() + FP * F.transpose();
+  state::node_part(P) = 0.5 * (node + node.transpose());
   return P;
 }
 
 Elimination eliminate(const NodeInformation& first, const IntervalRows& interval) {
-  constexpr int kNode = kNodeSize;
+  constexpr int kNode = state::kNodeSize;
   const Index slow = first.slow();
   const Index columns = 2 * kNode + slow;
-  Eigen::Matrix<double, 2 * kNode, Dynamic, Eigen::ColMajor, 2 * kNode, kNode + kMostSize + 1> rows(
-      2 * kNode, columns + 1);
+  Eigen::Matrix<double, 2 * kNode, Dynamic, Eigen::ColMajor, 2 * kNode,
+                kNode + state::kMostSize + 1>
+      rows(2 * kNode, columns + 1);
   rows << interval.J_x0, interval.J_x1, interval.J_slow, interval.r,  //
-      first.S.topLeftCorner<kNode, kNode>(), NodeMatrix::Zero(),
+      first.S.topLeftCorner<kNode, kNode>(), state::NodeMatrix::Zero(),
       first.S.topRightCorner(kNode, slow), first.r.head<kNode>();
   reflect<kNode>(rows, kNode, kNode);
   Elimination out;
@@ -143,15 +145,15 @@ Elimination eliminate(const NodeInformation& first, const IntervalRows& interval
   return out;
 }
 
-SquareRootPrior to_prior(const NodeInformation& information, const NodeState& at,
-                         const SlowVector& slow) {
+SquareRootPrior to_prior(const NodeInformation& information, const state::NodeState& at,
+                         const state::SlowVector& slow) {
   return {at, slow, information.S, information.r};
 }
 
-StateMatrix covariance(const NodeInformation& information) {
+state::StateMatrix covariance(const NodeInformation& information) {
   throw_if_undetermined(information.S);
   const Index size = information.r.size();
-  StateMatrix root = StateMatrix::Identity(size, size);
+  state::StateMatrix root = state::StateMatrix::Identity(size, size);
   information.S.triangularView<Eigen::Upper>().solveInPlace(root);
   return root * root.transpose();
 }

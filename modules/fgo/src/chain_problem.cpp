@@ -61,13 +61,13 @@ ceres::Problem::Options problem_options() {
 
 }  // namespace
 
-ChainProblem::ChainProblem(const NodeState& first, const SlowVector& slow, PriorFactor& prior,
-                           ceres::LossFunction* loss)
+ChainProblem::ChainProblem(const state::NodeState& first, const state::SlowVector& slow,
+                           PriorFactor& prior, ceres::LossFunction* loss)
     : loss_(loss), slow_(slow), problem_(problem_options()) {
   problem_.AddResidualBlock(&prior, nullptr, with_border({add_block(first)}));
 }
 
-double* ChainProblem::add_block(const NodeState& x) {
+double* ChainProblem::add_block(const state::NodeState& x) {
   StateBlock& block = blocks_.emplace_back();
   write_block(x, block.data());
   problem_.AddParameterBlock(block.data(), kStateBlockSize, &manifold_);
@@ -79,7 +79,7 @@ std::vector<double*> ChainProblem::with_border(std::vector<double*> nodes) {
   return nodes;
 }
 
-void ChainProblem::add_node(const NodeState& x, PreintegrationFactor& interval) {
+void ChainProblem::add_node(const state::NodeState& x, PreintegrationFactor& interval) {
   double* const before = blocks_.back().data();
   problem_.AddResidualBlock(&interval, nullptr, with_border({before, add_block(x)}));
 }

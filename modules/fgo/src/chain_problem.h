@@ -18,11 +18,11 @@ namespace foucault::fgo {
 class ChainProblem {
  public:
   /// A chain of one node.
-  ChainProblem(const NodeState& first, const SlowVector& slow, PriorFactor& prior,
+  ChainProblem(const state::NodeState& first, const state::SlowVector& slow, PriorFactor& prior,
                ceres::LossFunction* loss);
 
   /// The next node, joined to the last.
-  void add_node(const NodeState& x, PreintegrationFactor& interval);
+  void add_node(const state::NodeState& x, PreintegrationFactor& interval);
 
   /// An observation at the last node.
   void add(ObservationFactor& observation);
@@ -31,18 +31,18 @@ class ChainProblem {
   /// Throws std::runtime_error if that fails.
   void optimize(const FgoOptions& options);
 
-  NodeState state(std::size_t k) const { return read_block(blocks_[k].data()); }
-  const SlowVector& slow() const { return slow_; }
+  state::NodeState state(std::size_t k) const { return read_block(blocks_[k].data()); }
+  const state::SlowVector& slow() const { return slow_; }
   std::size_t size() const { return blocks_.size(); }
 
  private:
-  double* add_block(const NodeState& x);
+  double* add_block(const state::NodeState& x);
   std::vector<double*> with_border(std::vector<double*> nodes);
 
   ceres::LossFunction* loss_;
   StateManifold manifold_;
   std::deque<StateBlock> blocks_;
-  SlowVector slow_;
+  state::SlowVector slow_;
   ceres::Problem problem_;  ///< last: refers to the members above
 };
 

@@ -2,14 +2,16 @@
 
 namespace foucault::fgo {
 
-Layout as_constants(const Layout& layout) {
-  Layout constants;
-  for (const SlowBlock& slow : layout.slow()) constants.add(slow.block, slow.sigma);
+state::Layout as_constants(const state::Layout& layout) {
+  state::Layout constants;
+  for (const state::SlowBlock& slow : layout.slow()) constants.add(slow.block, slow.sigma);
   return constants;
 }
 
-std::optional<ImuScale> scale_of(const Layout& layout, const SlowVector& slow) {
-  if (!layout.find(block::gyro_scale) && !layout.find(block::accel_scale)) return std::nullopt;
+std::optional<state::ImuScale> scale_of(const state::Layout& layout,
+                                        const state::SlowVector& slow) {
+  if (!layout.find(state::block::gyro_scale) && !layout.find(state::block::accel_scale))
+    return std::nullopt;
   return layout.imu_scale(slow);
 }
 

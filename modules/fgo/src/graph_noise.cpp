@@ -15,15 +15,15 @@ void require(bool there, const char* zero, const char* of) {
 
 }  // namespace
 
-void require_noise(const ImuNoise& noise) {
+void require_noise(const imu::ImuNoise& noise) {
   require(noise.gyro_noise_density > 0, "imu.arw_deg_sqrt_h is 0",
           "the white noise of the gyroscopes");
   require(noise.accel_noise_density > 0, "imu.vrw_m_s_sqrt_h is 0",
           "the white noise of the accelerometers");
-  require(gyro_markov_bias(noise).sigma > 0,
+  require(imu::gyro_markov_bias(noise).sigma > 0,
           "imu.gyro_bias_deg_h and imu.gyro_turn_on_deg_h are both 0",
           "the sigma of the gyroscopes' bias");
-  require(accel_markov_bias(noise).sigma > 0,
+  require(imu::accel_markov_bias(noise).sigma > 0,
           "imu.accel_bias_mgal and imu.accel_turn_on_mgal are both 0",
           "the sigma of the accelerometers' bias");
 }

@@ -6,6 +6,6 @@ namespace foucault::fgo {
 
 /// A graph weighs by inverse covariances: every error must have one.
 /// Throws UsageError naming the key of one that is zero.
-void require_noise(const ImuNoise& noise);
+void require_noise(const imu::ImuNoise& noise);
 
 }  // namespace foucault::fgo

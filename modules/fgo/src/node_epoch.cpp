@@ -10,22 +10,25 @@ Eigen::Quaterniond heading_part(const Eigen::Matrix3d& R) {
 }
 
 /// How a model's attitude turns with the frame.
-Eigen::Quaterniond attitude_turn(const Eigen::Matrix3d& R, PreintegrationModel model) {
-  return model == PreintegrationModel::full ? Eigen::Quaterniond(R) : heading_part(R);
+Eigen::Quaterniond attitude_turn(const Eigen::Matrix3d& R,
+                                 preintegration::PreintegrationModel model) {
+  return model == preintegration::PreintegrationModel::full ? Eigen::Quaterniond(R)
+                                                            : heading_part(R);
 }
 
 }  // namespace
 
-StateMatrix turned(const StateMatrix& P, const Eigen::Matrix3d& R) {
-  StateMatrix out = P;
-  for (const NodeBlock& block : {block::position, block::velocity}) {
-    rows_of(out, block) = (R * rows_of(out, block)).eval();
-    columns_of(out, block) = (columns_of(out, block) * R.transpose()).eval();
+state::StateMatrix turned(const state::StateMatrix& P, const Eigen::Matrix3d& R) {
+  state::StateMatrix out = P;
+  for (const state::NodeBlock& block : {state::block::position, state::block::velocity}) {
+    state::rows_of(out, block) = (R * rows_of(out, block)).eval();
+    state::columns_of(out, block) = (state::columns_of(out, block) * R.transpose()).eval();
   }
   return out;
 }
 
-LocalNode to_nav(const NodeState& x, const SlowVector& slow, const GraphContext& context) {
+LocalNode to_nav(const state::NodeState& x, const state::SlowVector& slow,
+                 const GraphContext& context) {
   LocalNode local;
   local.x.position = context.frame.to_geodetic(x.p_w_b);
   local.R_n_w = context.frame.R_w_n(local.x.position).transpose();
@@ -36,9 +39,9 @@ LocalNode to_nav(const NodeState& x, const SlowVector& slow, const GraphContext&
   return local;
 }
 
-NodeState to_node(const NavState& x, const GraphContext& context) {
+state::NodeState to_node(const state::NavState& x, const GraphContext& context) {
   const Eigen::Matrix3d R_w_n = context.frame.R_w_n(x.position);
-  NodeState node;
+  state::NodeState node;
   node.p_w_b = context.frame.to_local(x.position);
   node.v_w_b = R_w_n * x.velocity_n;
   node.q_w_b = (attitude_turn(R_w_n, context.model) * x.q_n_b).normalized();
@@ -46,10 +49,10 @@ NodeState to_node(const NavState& x, const GraphContext& context) {
   return node;
 }
 
-Epoch to_epoch(int64_t t_ns, const NodeState& x, const SlowVector& slow,
-               const StateMatrix& covariance_w, const GraphContext& context) {
+state::Epoch to_epoch(int64_t t_ns, const state::NodeState& x, const state::SlowVector& slow,
+                      const state::StateMatrix& covariance_w, const GraphContext& context) {
   const LocalNode local = to_nav(x, slow, context);
-  Epoch epoch{local.x, turned(covariance_w, local.R_n_w)};
+  state::Epoch epoch{local.x, turned(covariance_w, local.R_n_w)};
   epoch.t_ns = t_ns;
   return epoch;
 }

@@ -8,24 +8,24 @@
 
 namespace foucault::fgo {
 
-ObservationRows linearize(const NodeObservation& z, const NodeState& x, const SlowVector& slow,
-                          const GraphContext& context) {
+ObservationRows linearize(const NodeObservation& z, const state::NodeState& x,
+                          const state::SlowVector& slow, const GraphContext& context) {
   const LocalNode node = to_nav(x, slow, context);
-  const Linearized in_n = z.observation->linearize(node.x, z.rate_b, context.layout);
+  const state::Linearized in_n = z.observation->linearize(node.x, z.rate_b, context.layout);
   const auto llt = in_n.R.llt();
   if (llt.info() != Eigen::Success)
     throw std::invalid_argument("covariance of " + std::string(z.observation->name()) +
                                 " is not positive definite");
   ObservationRows rows{-in_n.r, in_n.H};
-  for (const NodeBlock& turned : {block::position, block::velocity})
-    columns_of(rows.J, turned) = (columns_of(in_n.H, turned) * node.R_n_w).eval();
+  for (const state::NodeBlock& turned : {state::block::position, state::block::velocity})
+    state::columns_of(rows.J, turned) = (state::columns_of(in_n.H, turned) * node.R_n_w).eval();
   llt.matrixL().solveInPlace(rows.r);
   llt.matrixL().solveInPlace(rows.J);
   return rows;
 }
 
-ObservationFactor::ObservationFactor(const NodeObservation& z, const NodeState& x,
-                                     const SlowVector& slow, const GraphContext& context)
+ObservationFactor::ObservationFactor(const NodeObservation& z, const state::NodeState& x,
+                                     const state::SlowVector& slow, const GraphContext& context)
     : z_(z), context_(&context) {
   set_num_residuals(static_cast<int>(linearize(x, slow).r.size()));
   *mutable_parameter_block_sizes() = block_sizes(1, slow.size());

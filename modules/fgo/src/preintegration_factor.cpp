@@ -9,76 +9,81 @@
 namespace foucault::fgo {
 namespace {
 
-NodeMatrix inverse_cholesky(const NodeMatrix& covariance) {
-  const Eigen::LLT<NodeMatrix> llt(covariance);
+state::NodeMatrix inverse_cholesky(const state::NodeMatrix& covariance) {
+  const Eigen::LLT<state::NodeMatrix> llt(covariance);
   if (llt.info() != Eigen::Success)
     throw std::invalid_argument("preintegration covariance is not positive definite");
-  NodeMatrix inverse = NodeMatrix::Identity();
+  state::NodeMatrix inverse = state::NodeMatrix::Identity();
   llt.matrixL().solveInPlace(inverse);
   return inverse;
 }
 
 }  // namespace
 
-PreintegrationFactor::PreintegrationFactor(const Preintegration& pre, const EarthModel& earth,
-                                           const Layout& layout)
+PreintegrationFactor::PreintegrationFactor(const preintegration::Preintegration& pre,
+                                           const preintegration::EarthModel& earth,
+                                           const state::Layout& layout)
     : deltas_(pre), earth_(earth), layout_(layout) {
   pack_lower(inverse_cholesky(pre.covariance), sqrt_information_.data());
-  set_num_residuals(NodeVector::RowsAtCompileTime);
+  set_num_residuals(state::NodeVector::RowsAtCompileTime);
   *mutable_parameter_block_sizes() = block_sizes(2, layout.slow_size());
 }
 
-double PreintegrationFactor::turned_by(const ImuBias& bias, const SlowVector& slow) const {
+double PreintegrationFactor::turned_by(const state::ImuBias& bias,
+                                       const state::SlowVector& slow) const {
   const double by_bias = (bias.gyro - deltas_.bias.gyro).norm() * deltas_.dt;
   if (!deltas_.scale) return by_bias;
   const Eigen::Vector3d change = layout_.imu_scale(slow).gyro - deltas_.scale->gyro;
   return by_bias + change.cwiseProduct(so3::log(deltas_.dq)).norm();
 }
 
-NodeMatrix PreintegrationFactor::sqrt_information() const {
-  NodeMatrix root = NodeMatrix::Zero();
+state::NodeMatrix PreintegrationFactor::sqrt_information() const {
+  state::NodeMatrix root = state::NodeMatrix::Zero();
   unpack_lower(sqrt_information_.data(), root);
   return root;
 }
 
-Preintegration PreintegrationFactor::preintegration() const {
-  Preintegration pre{deltas_, {}};
-  const NodeMatrix root =
-      sqrt_information().triangularView<Eigen::Lower>().solve(NodeMatrix::Identity());
+preintegration::Preintegration PreintegrationFactor::preintegration() const {
+  preintegration::Preintegration pre{deltas_, {}};
+  const state::NodeMatrix root =
+      sqrt_information().triangularView<Eigen::Lower>().solve(state::NodeMatrix::Identity());
   pre.covariance = root * root.transpose();
   return pre;
 }
 
-IntervalRows PreintegrationFactor::linearize(const NodeState& x0, const NodeState& x1,
-                                             const SlowVector& slow) const {
-  const MotionResidual m = motion_residual(x0, x1, deltas_, earth_, layout_.imu_scale(slow));
-  const NodeMatrix root = sqrt_information();  // products of triangles of this size are slower
+IntervalRows PreintegrationFactor::linearize(const state::NodeState& x0, const state::NodeState& x1,
+                                             const state::SlowVector& slow) const {
+  const preintegration::MotionResidual m =
+      preintegration::motion_residual(x0, x1, deltas_, earth_, layout_.imu_scale(slow));
+  const state::NodeMatrix root =
+      sqrt_information();  // products of triangles of this size are slower
   IntervalRows out;
   out.r.noalias() = root * m.r;
   out.J_x0.noalias() = root.lazyProduct(m.J_x0);
   out.J_x1.noalias() = root.lazyProduct(m.J_x1);
-  out.J_slow = slow_jacobian(m, layout_);
+  out.J_slow = preintegration::slow_jacobian(m, layout_);
   if (deltas_.scale) out.J_slow = root * out.J_slow;
   return out;
 }
 
-NodeVector PreintegrationFactor::residual(const NodeState& x0, const NodeState& x1,
-                                          const SlowVector& slow) const {
+state::NodeVector PreintegrationFactor::residual(const state::NodeState& x0,
+                                                 const state::NodeState& x1,
+                                                 const state::SlowVector& slow) const {
   return sqrt_information().triangularView<Eigen::Lower>() *
          motion_residual_value(x0, x1, deltas_, earth_, layout_.imu_scale(slow));
 }
 
 bool PreintegrationFactor::Evaluate(double const* const* blocks, double* residual,
                                     double** jacobians) const {
-  const NodeState x0 = read_block(blocks[0]);
-  const NodeState x1 = read_block(blocks[1]);
-  const SlowVector slow = read_border(*this, blocks, 2);
+  const state::NodeState x0 = read_block(blocks[0]);
+  const state::NodeState x1 = read_block(blocks[1]);
+  const state::SlowVector slow = read_border(*this, blocks, 2);
   if (jacobians == nullptr) {
-    Eigen::Map<NodeVector>{residual} = this->residual(x0, x1, slow);
+    Eigen::Map<state::NodeVector>{residual} = this->residual(x0, x1, slow);
     return true;
   }
   const IntervalRows rows = linearize(x0, x1, slow);
-  Eigen::Map<NodeVector>{residual} = rows.r;
+  Eigen::Map<state::NodeVector>{residual} = rows.r;
   if (jacobians[0] != nullptr) write_node_jacobian(rows.J_x0, blocks[0], jacobians[0]);
   if (jacobians[1] != nullptr) write_node_jacobian(rows.J_x1, blocks[1], jacobians[1]);
   if (slow.size() > 0 && jacobians[2] != nullptr) write_border_jacobian(rows.J_slow, jacobians[2]);

@@ -7,13 +7,14 @@
 
 namespace foucault::fgo {
 
-SquareRootPrior prior_from_covariance(const NodeState& at, const SlowVector& slow_at,
-                                      const StateMatrix& covariance) {
-  const Eigen::LLT<StateMatrix> llt(covariance);
+SquareRootPrior prior_from_covariance(const state::NodeState& at, const state::SlowVector& slow_at,
+                                      const state::StateMatrix& covariance) {
+  const Eigen::LLT<state::StateMatrix> llt(covariance);
   if (llt.info() != Eigen::Success)
     throw std::invalid_argument("covariance of a prior is not positive definite");
   const Eigen::Index size = covariance.rows();
-  SquareRootPrior prior{at, slow_at, StateMatrix::Identity(size, size), StateVector::Zero(size)};
+  SquareRootPrior prior{at, slow_at, state::StateMatrix::Identity(size, size),
+                        state::StateVector::Zero(size)};
   llt.matrixL().solveInPlace(prior.S);
   return prior;
 }
@@ -23,12 +24,13 @@ PriorFactor::PriorFactor(const SquareRootPrior& prior) : prior_(prior) {
   *mutable_parameter_block_sizes() = block_sizes(1, prior.slow_at.size());
 }
 
-StateRows PriorFactor::linearize(const NodeState& x, const SlowVector& slow) const {
-  StateVector d(prior_.r.size());
-  d << boxminus(x, prior_.at), slow - prior_.slow_at;
+StateRows PriorFactor::linearize(const state::NodeState& x, const state::SlowVector& slow) const {
+  state::StateVector d(prior_.r.size());
+  d << state::boxminus(x, prior_.at), slow - prior_.slow_at;
   StateRows rows{prior_.r + prior_.S * d, prior_.S};
-  columns_of(rows.J, block::attitude) =
-      columns_of(prior_.S, block::attitude) * so3::right_jacobian_inverse(part(d, block::attitude));
+  state::columns_of(rows.J, state::block::attitude) =
+      state::columns_of(prior_.S, state::block::attitude) *
+      so3::right_jacobian_inverse(state::part(d, state::block::attitude));
   return rows;
 }
 

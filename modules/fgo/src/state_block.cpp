@@ -8,12 +8,12 @@ constexpr int kP = 0, kV = 3, kQ = 6, kBg = 10, kBa = 13;
 /// All but the attitude are their own tangents.
 struct Copied {
   int at;
-  NodeBlock tangent;
+  state::NodeBlock tangent;
 };
-constexpr Copied kCopied[] = {{kP, block::position},
-                              {kV, block::velocity},
-                              {kBg, block::gyro_bias},
-                              {kBa, block::accel_bias}};
+constexpr Copied kCopied[] = {{kP, state::block::position},
+                              {kV, state::block::velocity},
+                              {kBg, state::block::gyro_bias},
+                              {kBa, state::block::accel_bias}};
 
 /// d(q * exp(d)) / dd at d = 0 for q = xyzw, 4x3: half of the left product matrix (5).
 Eigen::Matrix<double, 4, 3> quaternion_plus_jacobian(const double* q) {
@@ -28,13 +28,13 @@ Eigen::Matrix<double, 3, 4> quaternion_minus_jacobian(const double* q) {
   return 4 * quaternion_plus_jacobian(q).transpose();
 }
 
-using PlusMatrix = Eigen::Matrix<double, kStateBlockSize, kNodeSize, Eigen::RowMajor>;
-using MinusMatrix = Eigen::Matrix<double, kNodeSize, kStateBlockSize, Eigen::RowMajor>;
+using PlusMatrix = Eigen::Matrix<double, kStateBlockSize, state::kNodeSize, Eigen::RowMajor>;
+using MinusMatrix = Eigen::Matrix<double, state::kNodeSize, kStateBlockSize, Eigen::RowMajor>;
 
 }  // namespace
 
-NodeState read_block(const double* block) {
-  NodeState x;
+state::NodeState read_block(const double* block) {
+  state::NodeState x;
   x.p_w_b = Eigen::Map<const Eigen::Vector3d>(block + kP);
   x.v_w_b = Eigen::Map<const Eigen::Vector3d>(block + kV);
   x.q_w_b = Eigen::Map<const Eigen::Quaterniond>(block + kQ);
@@ -43,7 +43,7 @@ NodeState read_block(const double* block) {
   return x;
 }
 
-void write_block(const NodeState& x, double* block) {
+void write_block(const state::NodeState& x, double* block) {
   Eigen::Map<Eigen::Vector3d>(block + kP) = x.p_w_b;
   Eigen::Map<Eigen::Vector3d>(block + kV) = x.v_w_b;
   Eigen::Map<Eigen::Quaterniond>(block + kQ) = x.q_w_b;
@@ -57,9 +57,10 @@ std::vector<int32_t> block_sizes(int nodes, Eigen::Index slow) {
   return sizes;
 }
 
-SlowVector read_border(const ceres::CostFunction& factor, double const* const* blocks, int nodes) {
+state::SlowVector read_border(const ceres::CostFunction& factor, double const* const* blocks,
+                              int nodes) {
   const std::vector<int32_t>& sizes = factor.parameter_block_sizes();
-  if (static_cast<int>(sizes.size()) == nodes) return SlowVector(0);
+  if (static_cast<int>(sizes.size()) == nodes) return state::SlowVector(0);
   return Eigen::Map<const Eigen::VectorXd>(blocks[nodes], sizes[nodes]);
 }
 
@@ -67,7 +68,7 @@ PlusMatrix plus_jacobian(const double* block) {
   PlusMatrix J = PlusMatrix::Zero();
   for (const Copied& copied : kCopied)
     J.block<3, 3>(copied.at, copied.tangent.offset).setIdentity();
-  J.block<4, 3>(kQ, block::attitude.offset) = quaternion_plus_jacobian(block + kQ);
+  J.block<4, 3>(kQ, state::block::attitude.offset) = quaternion_plus_jacobian(block + kQ);
   return J;
 }
 
@@ -75,7 +76,7 @@ MinusMatrix minus_jacobian(const double* block) {
   MinusMatrix J = MinusMatrix::Zero();
   for (const Copied& copied : kCopied)
     J.block<3, 3>(copied.tangent.offset, copied.at).setIdentity();
-  J.block<3, 4>(block::attitude.offset, kQ) = quaternion_minus_jacobian(block + kQ);
+  J.block<3, 4>(state::block::attitude.offset, kQ) = quaternion_minus_jacobian(block + kQ);
   return J;
 }
 
@@ -84,9 +85,9 @@ void write_node_jacobian(const NodeColumns& J, const double* block, double* out)
   Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, kStateBlockSize, Eigen::RowMajor>> ambient(
       out, J.rows(), kStateBlockSize);
   for (const Copied& copied : kCopied)
-    ambient.middleCols<3>(copied.at) = columns_of(J, copied.tangent);
-  ambient.middleCols<4>(kQ) =
-      columns_of(J, block::attitude).lazyProduct(quaternion_minus_jacobian(block + kQ));
+    ambient.middleCols<3>(copied.at) = state::columns_of(J, copied.tangent);
+  ambient.middleCols<4>(kQ) = state::columns_of(J, state::block::attitude)
+                                  .lazyProduct(quaternion_minus_jacobian(block + kQ));
 }
 
 void write_border_jacobian(const BorderColumns& J, double* out) {
@@ -95,7 +96,8 @@ void write_border_jacobian(const BorderColumns& J, double* out) {
 }
 
 bool StateManifold::Plus(const double* x, const double* delta, double* x_plus_delta) const {
-  write_block(boxplus(read_block(x), Eigen::Map<const NodeVector>(delta)), x_plus_delta);
+  write_block(state::boxplus(read_block(x), Eigen::Map<const state::NodeVector>(delta)),
+              x_plus_delta);
   return true;
 }
 
@@ -105,7 +107,7 @@ bool StateManifold::PlusJacobian(const double* x, double* jacobian) const {
 }
 
 bool StateManifold::Minus(const double* y, const double* x, double* y_minus_x) const {
-  Eigen::Map<NodeVector>{y_minus_x} = boxminus(read_block(y), read_block(x));
+  Eigen::Map<state::NodeVector>{y_minus_x} = state::boxminus(read_block(y), read_block(x));
   return true;
 }
 

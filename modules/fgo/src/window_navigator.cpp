@@ -21,30 +21,31 @@ constexpr double kSettledResidual = 0.05;
 
 }  // namespace
 
-WindowNavigator::WindowNavigator(const FgoOptions& options, PreintegrationModel model,
-                                 const ImuNoise& noise, const Layout& layout)
+WindowNavigator::WindowNavigator(const FgoOptions& options,
+                                 preintegration::PreintegrationModel model,
+                                 const imu::ImuNoise& noise, const state::Layout& layout)
     : options_(options),
-      context_{LocalFrame(Geodetic{}), model, as_constants(layout)},
+      context_{geodesy::LocalFrame(Geodetic{}), model, as_constants(layout)},
       noise_(noise),
       loss_(make_loss(options)),
-      slow_(SlowVector::Zero(layout.slow_size())) {
+      slow_(state::SlowVector::Zero(layout.slow_size())) {
   require_noise(noise);
 }
 
 WindowNavigator::~WindowNavigator() = default;
 
-void WindowNavigator::start(const Epoch& initial) {
+void WindowNavigator::start(const state::Epoch& initial) {
   integrator_.reset();
-  context_.frame = LocalFrame(initial.position);
-  const Epoch whole = with_slow_blocks(initial, context_.layout);
+  context_.frame = geodesy::LocalFrame(initial.position);
+  const state::Epoch whole = state::with_slow_blocks(initial, context_.layout);
   slow_ = whole.slow;
   begin_window(initial.t_ns, to_node(whole, context_),
                turned(whole.covariance, context_.frame.R_w_n(whole.position)));
 }
 
 /// A window of one node.
-void WindowNavigator::begin_window(int64_t t_ns, const NodeState& x,
-                                   const StateMatrix& covariance) {
+void WindowNavigator::begin_window(int64_t t_ns, const state::NodeState& x,
+                                   const state::StateMatrix& covariance) {
   nodes_.clear();
   intervals_.clear();
   Node& node = nodes_.emplace_back();
@@ -56,14 +57,14 @@ void WindowNavigator::begin_window(int64_t t_ns, const NodeState& x,
   begin_interval();
 }
 
-void WindowNavigator::loosen(const NodeMatrix& added) {
+void WindowNavigator::loosen(const state::NodeMatrix& added) {
   Prediction now = prediction();
   const Eigen::Matrix3d R_w_n = context_.frame.R_w_n(context_.frame.to_geodetic(now.x.p_w_b));
-  node_part(now.covariance) += turned(added, R_w_n);
+  state::node_part(now.covariance) += turned(added, R_w_n);
   begin_window(integrator_->t_end_ns(), now.x, now.covariance);
 }
 
-std::unique_ptr<Navigator> WindowNavigator::ahead(double scale) const {
+std::unique_ptr<measurement::Navigator> WindowNavigator::ahead(double scale) const {
   const Prediction now = prediction();
   auto copy = std::make_unique<WindowNavigator>(options_, context_.model, noise_, context_.layout);
   copy->context_.frame = context_.frame;
@@ -78,7 +79,7 @@ void WindowNavigator::begin_interval() {
   open_ = ImuInterval{};
   if (integrator_) open_.before = integrator_->previous();
   const Node& node = nodes_.back();
-  earth_ = earth_model(context_.model, context_.frame, node.x.p_w_b);
+  earth_ = preintegration::earth_model(context_.model, context_.frame, node.x.p_w_b);
   integrator_.emplace(noise_, node.x.bias, node.t_ns, open_.before,
                       scale_of(context_.layout, slow_));
 }
@@ -90,29 +91,30 @@ void WindowNavigator::propagate(const ImuIncrement& increment) {
 }
 
 WindowNavigator::Prediction WindowNavigator::prediction() const {
-  const NodeState& x0 = nodes_.back().x;
+  const state::NodeState& x0 = nodes_.back().x;
   if (at_node()) return {x0, covariance_};
   const StageTimer timer(Stage::covariance);
-  const Preintegration pre = measured(*integrator_, context_.model);
-  const NodeState x1 = predict(x0, pre, earth_, context_.layout.imu_scale(slow_));
-  return {x1, predict_covariance(x0, x1, pre, earth_, covariance_, context_.layout, slow_)};
+  const preintegration::Preintegration pre = measured(*integrator_, context_.model);
+  const state::NodeState x1 = predict(x0, pre, earth_, context_.layout.imu_scale(slow_));
+  return {x1, preintegration::predict_covariance(x0, x1, pre, earth_, covariance_, context_.layout,
+                                                 slow_)};
 }
 
-Innovation WindowNavigator::innovation(const Observation& observation) const {
+state::Innovation WindowNavigator::innovation(const measurement::Observation& observation) const {
   const Prediction predicted = prediction();
   const LocalNode local = to_nav(predicted.x, slow_, context_);
-  return innovation_of(observation.linearize(local.x, rates_.gyro_b, context_.layout),
-                       turned(predicted.covariance, local.R_n_w));
+  return state::innovation_of(observation.linearize(local.x, rates_.gyro_b, context_.layout),
+                              turned(predicted.covariance, local.R_n_w));
 }
 
-Epoch WindowNavigator::epoch() const {
+state::Epoch WindowNavigator::epoch() const {
   const Prediction now = prediction();
   return to_epoch(integrator_->t_end_ns(), now.x, slow_, now.covariance, context_);
 }
 
-void WindowNavigator::update(const ObservationPtr& observation) {
+void WindowNavigator::update(const measurement::ObservationPtr& observation) {
   if (!at_node()) {
-    const Preintegration pre = measured(*integrator_, context_.model);
+    const preintegration::Preintegration pre = measured(*integrator_, context_.model);
     add_node(predict(nodes_.back().x, pre, earth_, context_.layout.imu_scale(slow_)), pre);
   }
   Node& node = nodes_.back();
@@ -134,7 +136,8 @@ void WindowNavigator::hold() {
   begin_interval();
 }
 
-void WindowNavigator::add_node(const NodeState& x, const Preintegration& pre) {
+void WindowNavigator::add_node(const state::NodeState& x,
+                               const preintegration::Preintegration& pre) {
   open_.factor = std::make_unique<PreintegrationFactor>(pre, earth_, context_.layout);
   Node& node = nodes_.emplace_back();
   node.t_ns = pre.t_end_ns;
@@ -205,12 +208,12 @@ void WindowNavigator::add_observations(Node& node) const {
 void WindowNavigator::carry_back(std::size_t from) {
   const StageTimer timer(Stage::solve);
   if (from < 2) return;
-  StateVector d(state_size(slow_.size()));
-  node_part(d) = boxminus(nodes_[from - 1].x, nodes_[from - 1].past.at);
+  state::StateVector d(state::state_size(slow_.size()));
+  state::node_part(d) = state::boxminus(nodes_[from - 1].x, nodes_[from - 1].past.at);
   for (std::size_t k = from - 1; k-- > 0;) {
     d.tail(slow_.size()) = slow_ - nodes_[k + 1].past.slow;
-    node_part(d) = intervals_[k].elimination.eliminated(d);
-    nodes_[k].x = boxplus(nodes_[k].past.at, NodeVector(node_part(d)));
+    state::node_part(d) = intervals_[k].elimination.eliminated(d);
+    nodes_[k].x = state::boxplus(nodes_[k].past.at, state::NodeVector(state::node_part(d)));
   }
 }
 
@@ -244,8 +247,8 @@ bool WindowNavigator::has_bent(const ObservationFactor& observation, const Node&
   const ObservationRows before = observation.linearize(node.past.at, node.past.slow);
   const ObservationRows now = observation.linearize(node.x, slow_);
   if (loss_) return (now.r - before.r).norm() > kSettledResidual;
-  StateVector d(state_size(slow_.size()));
-  d << boxminus(node.x, node.past.at), slow_ - node.past.slow;
+  state::StateVector d(state::state_size(slow_.size()));
+  d << state::boxminus(node.x, node.past.at), slow_ - node.past.slow;
   return (now.r - before.r - before.J * d).norm() > kSettledResidual;
 }
 

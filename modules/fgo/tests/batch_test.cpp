@@ -15,10 +15,10 @@ using namespace testing;
 class BatchTest : public NoisyDrive {
  protected:
   std::unique_ptr<BatchRecorder> recorder(double window_s = 10) {
-    auto forward = std::make_unique<WindowNavigator>(window_of(window_s),
-                                                     PreintegrationModel::refined, test_noise());
-    return std::make_unique<BatchRecorder>(std::move(forward), exact(),
-                                           PreintegrationModel::refined, test_noise());
+    auto forward = std::make_unique<WindowNavigator>(
+        window_of(window_s), preintegration::PreintegrationModel::refined, test_noise());
+    return std::make_unique<BatchRecorder>(
+        std::move(forward), exact(), preintegration::PreintegrationModel::refined, test_noise());
   }
 
   static FgoOptions exact() {
@@ -30,8 +30,8 @@ class BatchTest : public NoisyDrive {
 
 /// A chain as a recorder would leave it, six nodes with fixes at all but two.
 struct ChainDrive : SlowDrive {
-  explicit ChainDrive(const Layout& with = {})
-      : context{frame_, PreintegrationModel::refined, with} {}
+  explicit ChainDrive(const state::Layout& with = {})
+      : context{frame_, preintegration::PreintegrationModel::refined, with} {}
   void TestBody() override {}
   using SlowDrive::fix_at;
 
@@ -41,21 +41,22 @@ struct ChainDrive : SlowDrive {
   BatchChain chain(double gyro_bias_sigma = 2e-4, const Vector3d& integrated_at = Vector3d::Zero(),
                    bool keep = false) {
     reseed(5);
-    Epoch begin = initial(1);
-    part(begin.covariance, block::gyro_bias, block::gyro_bias) =
+    state::Epoch begin = initial(1);
+    state::part(begin.covariance, state::block::gyro_bias, state::block::gyro_bias) =
         gyro_bias_sigma * gyro_bias_sigma * Matrix3d::Identity();
-    NodeState x;
+    state::NodeState x;
     x.p_w_b = frame_.to_local(begin.position);
     x.v_w_b = begin.velocity_n;
     x.q_w_b = begin.q_n_b;
     x.bias = begin.bias;
     BatchChain out;
-    begin = with_slow_blocks(begin, context.layout);
+    begin = state::with_slow_blocks(begin, context.layout);
     out.prior = prior_from_covariance(x, begin.slow, begin.covariance);
     out.nodes.push_back({0, x, {}});
     for (int k = 0; k < 5; ++k) {
-      Preintegrator integrator(test_noise(), {integrated_at, x.bias.accel}, k * 1'000'000'000LL,
-                               std::nullopt, scale_of(context.layout, begin.slow));
+      preintegration::Preintegrator integrator(test_noise(), {integrated_at, x.bias.accel},
+                                               k * 1'000'000'000LL, std::nullopt,
+                                               scale_of(context.layout, begin.slow));
       ImuInterval& interval = out.intervals.emplace_back();
       for (int64_t i = 0; i < 100; ++i) {
         const int64_t t = k * 1'000'000'000LL + i * 10'000'000;
@@ -69,7 +70,7 @@ struct ChainDrive : SlowDrive {
       BatchNode& node = out.nodes.emplace_back();
       node.x = x;
       if (k == 1 || k == 2) continue;
-      node.observations.push_back({gnss_position(fix_at(k + 1, 0.02))});
+      node.observations.push_back({measurement::gnss_position(fix_at(k + 1, 0.02))});
       if (context.layout.slow_index(kTemperature)) node.observations.push_back({range_at(k + 1)});
     }
     return out;
@@ -80,20 +81,20 @@ struct ChainDrive : SlowDrive {
 struct Dense {
   Dense(const BatchChain& chain, const GraphContext& context, const BatchSolution& at)
       : slow(at.slow.size()),
-        nodes(kNodeSize * static_cast<Eigen::Index>(at.x.size())),
+        nodes(state::kNodeSize * static_cast<Eigen::Index>(at.x.size())),
         H(Eigen::MatrixXd::Zero(nodes + slow, nodes + slow)),
         gradient(Eigen::VectorXd::Zero(nodes + slow)) {
     const StateRows prior = PriorFactor(chain.prior).linearize(at.x[0], at.slow);
     add(0, prior.J, prior.r);
     for (std::size_t k = 0; k < at.x.size(); ++k) {
-      const Eigen::Index own = kNodeSize * static_cast<Eigen::Index>(k);
+      const Eigen::Index own = state::kNodeSize * static_cast<Eigen::Index>(k);
       for (const NodeObservation& observation : chain.nodes[k].observations) {
         const ObservationRows z = linearize(observation, at.x[k], at.slow, context);
         add(own, z.J, z.r);
       }
       if (k + 1 == at.x.size()) break;
       const IntervalRows m = chain.intervals[k].factor->linearize(at.x[k], at.x[k + 1], at.slow);
-      Eigen::MatrixXd J(kNodeSize, 2 * kNodeSize + slow);
+      Eigen::MatrixXd J(state::kNodeSize, 2 * state::kNodeSize + slow);
       J << m.J_x0, m.J_x1, m.J_slow;
       add(own, J, m.r);
     }
@@ -117,9 +118,9 @@ struct Dense {
 
   /// Rows of a node and the border.
   Eigen::VectorXi rows_of_node(std::size_t k) const {
-    const int own = kNodeSize * static_cast<int>(k);
-    Eigen::VectorXi rows(kNodeSize + slow);
-    rows << Eigen::VectorXi::LinSpaced(kNodeSize, own, own + kNodeSize - 1),
+    const int own = state::kNodeSize * static_cast<int>(k);
+    Eigen::VectorXi rows(state::kNodeSize + slow);
+    rows << Eigen::VectorXi::LinSpaced(state::kNodeSize, own, own + state::kNodeSize - 1),
         Eigen::VectorXi::LinSpaced(slow, static_cast<int>(nodes),
                                    static_cast<int>(nodes + slow) - 1);
     return rows;
@@ -130,7 +131,7 @@ struct Dense {
   Eigen::VectorXd gradient;
 };
 
-void expect_least_squares(const Layout& layout) {
+void expect_least_squares(const state::Layout& layout) {
   ChainDrive drive(layout);
   BatchChain chain = drive.chain();
   FgoOptions options;
@@ -153,8 +154,10 @@ void expect_least_squares(const Layout& layout) {
 TEST(Batch, IsTheLeastSquaresSolutionWithItsCovariance) { expect_least_squares({}); }
 
 TEST(Batch, IsTheLeastSquaresSolutionWithABorder) {
-  expect_least_squares(
-      Layout().add(kTemperature, 5).add(block::gyro_scale, 3e-3).add(block::accel_scale, 3e-3));
+  expect_least_squares(state::Layout()
+                           .add(kTemperature, 5)
+                           .add(state::block::gyro_scale, 3e-3)
+                           .add(state::block::accel_scale, 3e-3));
 }
 
 TEST(Batch, ABiasThatMovedIsIntegratedAnew) {
@@ -171,8 +174,9 @@ TEST(Batch, ABiasThatMovedIsIntegratedAnew) {
   const auto off = [&](const BatchSolution& other) {
     double worst = 0;
     for (std::size_t k = 0; k < near.x.size(); ++k) {
-      const NodeVector sigma = near.covariance_w[k].full().diagonal().cwiseSqrt();
-      const NodeVector difference = boxminus(other.x[k], near.x[k]).cwiseQuotient(sigma);
+      const state::NodeVector sigma = near.covariance_w[k].full().diagonal().cwiseSqrt();
+      const state::NodeVector difference =
+          state::boxminus(other.x[k], near.x[k]).cwiseQuotient(sigma);
       worst = std::max(worst, difference.cwiseAbs().maxCoeff());
     }
     return worst;
@@ -187,7 +191,7 @@ TEST(Batch, RobustLossShrugsOffAnOutlier) {
     BatchChain chain = drive.chain();
     GnssFix outlier = drive.fix_at(4, 0.02);
     outlier.antenna.height += off;
-    chain.nodes[4].observations = {{gnss_position(outlier)}};
+    chain.nodes[4].observations = {{measurement::gnss_position(outlier)}};
     FgoOptions options;
     options.robust = robust;
     options.max_iterations = 50;
@@ -203,49 +207,52 @@ TEST(Batch, RobustLossShrugsOffAnOutlier) {
 /// Dead reckoning from an attitude off by tens of degrees, with increments known to 1e-5 m/s: the
 /// valley of the cost is curved, and a plain Gauss-Newton step climbs out of it.
 TEST_F(BatchTest, ConvergesFromAttitudesFarOff) {
-  ImuNoise noise = test_noise();
+  imu::ImuNoise noise = test_noise();
   noise.gyro_noise_density = 1e-6;
   noise.accel_noise_density = 1e-5;
-  const GraphContext context{frame_, PreintegrationModel::refined, {}};
+  const GraphContext context{frame_, preintegration::PreintegrationModel::refined, {}};
   for (unsigned seed = 0; seed < 20; ++seed) {
     reseed(seed);
-    NodeState x = motion_.state(0);
+    state::NodeState x = motion_.state(0);
     const Vector3d sigma(0.1, 0.1, 0.4);
     x.q_w_b = x.q_w_b * so3::exp(draw(1).cwiseProduct(sigma));
-    Epoch begin = initial(1);
-    part(begin.covariance, block::attitude, block::attitude).diagonal() += sigma.cwiseAbs2();
+    state::Epoch begin = initial(1);
+    state::part(begin.covariance, state::block::attitude, state::block::attitude).diagonal() +=
+        sigma.cwiseAbs2();
     BatchChain chain;
-    chain.prior = prior_from_covariance(x, SlowVector(0), begin.covariance);
+    chain.prior = prior_from_covariance(x, state::SlowVector(0), begin.covariance);
     chain.nodes.push_back({0, x, {}});
     for (int second = 0; second < 20; ++second) {
-      const Preintegration pre =
+      const preintegration::Preintegration pre =
           preintegrate(motion_.increments(second, second + 1, 100), noise, x.bias);
       chain.intervals.emplace_back().factor =
           std::make_unique<PreintegrationFactor>(pre, wuhan_earth());
       x = predict(x, pre, wuhan_earth());
-      chain.nodes.push_back({pre.t_end_ns, x, {{gnss_position(fix_at(second + 1, 0.02))}}});
+      chain.nodes.push_back(
+          {pre.t_end_ns, x, {{measurement::gnss_position(fix_at(second + 1, 0.02))}}});
     }
     const BatchSolution solution = solve(chain, context, exact(), noise);
-    const NodeVector e = boxminus(motion_.state(20), solution.x.back());
-    EXPECT_LT(part(e, block::position).norm(), 0.15) << seed;
-    EXPECT_LT(part(e, block::attitude).norm(), 0.02) << seed;
+    const state::NodeVector e = state::boxminus(motion_.state(20), solution.x.back());
+    EXPECT_LT(state::part(e, state::block::position).norm(), 0.15) << seed;
+    EXPECT_LT(state::part(e, state::block::attitude).norm(), 0.02) << seed;
   }
 }
 
 TEST_F(BatchTest, EndsWhereAWindowOverEverythingEnds) {
   reseed(1);
-  WindowNavigator window(window_of(1e9), PreintegrationModel::refined, test_noise());
+  WindowNavigator window(window_of(1e9), preintegration::PreintegrationModel::refined,
+                         test_noise());
   window.start(initial(0.1));
   run(window, 25, 10, 15, [](int) {});
   reseed(1);
   const std::unique_ptr<BatchRecorder> batch = recorder();
   batch->start(initial(0.1));
   run(*batch, 25, 10, 15, [](int) {});
-  const std::deque<SmoothedEpoch> nodes = batch->smoothed();
+  const std::deque<measurement::SmoothedEpoch> nodes = batch->smoothed();
   ASSERT_EQ(nodes.size(), 26u);
-  const Epoch a = nodes.back().epoch();
-  const Epoch b = window.epoch();
-  const NodeVector sigma = b.covariance.diagonal().cwiseSqrt();
+  const state::Epoch a = nodes.back().epoch();
+  const state::Epoch b = window.epoch();
+  const state::NodeVector sigma = b.covariance.diagonal().cwiseSqrt();
   EXPECT_LT((error(a) - error(b)).cwiseQuotient(sigma).cwiseAbs().maxCoeff(), 1e-2);
   EXPECT_LT(
       (a.covariance.diagonal().cwiseSqrt() - sigma).cwiseQuotient(sigma).cwiseAbs().maxCoeff(),
@@ -259,16 +266,16 @@ TEST_F(BatchTest, ErrorsInAnOutageStayWithinTheirCovarianceAndBelowForward) {
     reseed(seed);
     const std::unique_ptr<BatchRecorder> batch = recorder();
     batch->start(initial(1));
-    Epoch forward;
+    state::Epoch forward;
     run(*batch, 35, 15, 26, [&](int second) {
       if (second == 25) forward = batch->epoch();
     });
-    const std::deque<SmoothedEpoch> nodes = batch->smoothed();
-    const NodeVector e = error(nodes[20].epoch());
+    const std::deque<measurement::SmoothedEpoch> nodes = batch->smoothed();
+    const state::NodeVector e = error(nodes[20].epoch());
     nees_sum += e.dot(nodes[20].epoch().covariance.ldlt().solve(e));
     smoothed_square += error(nodes[20].epoch()).head<2>().squaredNorm();
     forward_square += error(forward).head<2>().squaredNorm();
-    const NodeVector variance = nodes[25].epoch().covariance.diagonal();
+    const state::NodeVector variance = nodes[25].epoch().covariance.diagonal();
     EXPECT_LT(variance.head<3>().sum(), forward.covariance.diagonal().head<3>().sum());
   }
   // Sum of kRuns chi-squares of 15; 99.9 %.
@@ -280,13 +287,13 @@ TEST_F(BatchTest, WhatItFoundInTheForwardRunPutsItRight) {
   reseed(2);
   const std::unique_ptr<BatchRecorder> batch = recorder();
   batch->start(initial(0.1));
-  Epoch forward;
+  state::Epoch forward;
   run(*batch, 20, 8, 14, [&](int second) {
     if (second == 13) forward = batch->epoch();
   });
-  const SmoothedEpoch node = batch->smoothed()[13];
-  const NavState right = boxplus(forward, node.after);
-  EXPECT_LT(boxminus(node.state, right).norm(), 1e-8);
+  const measurement::SmoothedEpoch node = batch->smoothed()[13];
+  const state::NavState right = state::boxplus(forward, node.after);
+  EXPECT_LT(state::boxminus(node.state, right).norm(), 1e-8);
   EXPECT_GT(node.after.head<3>().norm(), 1e-3);
 }
 
@@ -299,7 +306,7 @@ TEST_F(BatchTest, ANewStartIsANewChain) {
   reseed(3);
   batch->start(initial(0.1));
   run(*batch, 5, 99, 99, [](int) {});
-  const std::deque<SmoothedEpoch> nodes = batch->smoothed();
+  const std::deque<measurement::SmoothedEpoch> nodes = batch->smoothed();
   ASSERT_EQ(nodes.size(), 2 * before);
   for (std::size_t k = 0; k < before; ++k) {
     EXPECT_LT((error(nodes[k].epoch()) - error(nodes[before + k].epoch())).norm(), 1e-6);
@@ -318,20 +325,20 @@ TEST_F(BatchTest, LooseningBridgesAJumpOfTheState) {
            t += 10'000'000)
         batch->propagate(noisy_increment(t, t + 10'000'000));
       GnssFix fix = fix_at(second, 0.02);
-      if (second > 10) fix.antenna = LocalFrame(fix.antenna).to_geodetic({5, 0, 0});
+      if (second > 10) fix.antenna = geodesy::LocalFrame(fix.antenna).to_geodetic({5, 0, 0});
       if (second == 11 && loosened) {
-        NodeMatrix added = NodeMatrix::Zero();
+        state::NodeMatrix added = state::NodeMatrix::Zero();
         added.diagonal().head<3>().setConstant(25);
         batch->loosen(added);
       }
-      batch->update(gnss_position(fix));
+      batch->update(measurement::gnss_position(fix));
       fixes.push_back(fix);
     }
-    const std::deque<SmoothedEpoch> nodes = batch->smoothed();
+    const std::deque<measurement::SmoothedEpoch> nodes = batch->smoothed();
     double largest = 0;
     for (std::size_t k = 0; k < fixes.size(); ++k) {
-      const Epoch epoch = nodes[k + 1].epoch();
-      const Vector3d antenna_n = LocalFrame(epoch.position).to_local(fixes[k].antenna);
+      const state::Epoch epoch = nodes[k + 1].epoch();
+      const Vector3d antenna_n = geodesy::LocalFrame(epoch.position).to_local(fixes[k].antenna);
       largest = std::max(largest, (antenna_n - epoch.q_n_b * fixes[k].p_b_a).norm());
     }
     return largest;

@@ -11,16 +11,17 @@ using namespace testing;
 
 class Border : public SlowDrive {
  protected:
-  static std::unique_ptr<WindowNavigator> window(double window_s,
-                                                 const Layout& layout = SlowDrive::layout()) {
-    return std::make_unique<WindowNavigator>(window_of(window_s), PreintegrationModel::refined,
-                                             test_noise(), layout);
+  static std::unique_ptr<WindowNavigator> window(
+      double window_s, const state::Layout& layout = SlowDrive::layout()) {
+    return std::make_unique<WindowNavigator>(
+        window_of(window_s), preintegration::PreintegrationModel::refined, test_noise(), layout);
   }
 
-  static BatchRecorder batch(const Layout& forward = layout()) {
+  static BatchRecorder batch(const state::Layout& forward = layout()) {
     FgoOptions options;
     options.max_iterations = 50;
-    return {window(10, forward), options, PreintegrationModel::refined, test_noise(), layout()};
+    return {window(10, forward), options, preintegration::PreintegrationModel::refined,
+            test_noise(), layout()};
   }
 };
 
@@ -32,9 +33,10 @@ TEST_F(Border, WindowFindsWhatDoesNotChange) {
     const auto navigator = window(10);
     navigator->start(initial(1));
     drive(*navigator, 30, 20, 26);
-    const Epoch last = navigator->epoch();
+    const state::Epoch last = navigator->epoch();
     consistency.add(whole_error(last), last);
-    EXPECT_LT(std::sqrt(last.covariance(kNodeSize, kNodeSize)), 0.3);  // of a prior of 5 K
+    EXPECT_LT(std::sqrt(last.covariance(state::kNodeSize, state::kNodeSize)),
+              0.3);  // of a prior of 5 K
   }
   consistency.expect_within();
 }
@@ -47,7 +49,7 @@ TEST_F(Border, BatchFindsWhatDoesNotChange) {
     BatchRecorder recorder = batch();
     recorder.start(initial(1));
     drive(recorder, 30, 18, 26);
-    const std::deque<SmoothedEpoch> nodes = recorder.smoothed();
+    const std::deque<measurement::SmoothedEpoch> nodes = recorder.smoothed();
     in_outage.add(whole_error(nodes[22].epoch()), nodes[22].epoch());
     end.add(whole_error(nodes.back().epoch()), nodes.back().epoch());
   }
@@ -61,20 +63,20 @@ TEST_F(Border, LeavingThemOutIsSeen) {
   for (unsigned seed = 0; seed < 5; ++seed) {
     reseed(seed);
     draw_slow();
-    const auto navigator = window(10, Layout().add(kTemperature, 5));
+    const auto navigator = window(10, state::Layout().add(kTemperature, 5));
     navigator->start(initial(1));
     drive(*navigator, 30, 20, 26);
-    const Epoch last = navigator->epoch();
-    const NodeVector e = error(last);
-    consistency.node += e.dot(NodeMatrix(node_part(last.covariance)).ldlt().solve(e));
+    const state::Epoch last = navigator->epoch();
+    const state::NodeVector e = error(last);
+    consistency.node += e.dot(state::NodeMatrix(state::node_part(last.covariance)).ldlt().solve(e));
   }
-  EXPECT_GT(consistency.node, 10 * 5 * kNodeSize);
+  EXPECT_GT(consistency.node, 10 * 5 * state::kNodeSize);
 }
 
 /// The same whether the past is marginalized, all is in the window, or solved at the end; and
 /// whether the forward run knew the blocks.
 TEST_F(Border, AllRoutesEndThere) {
-  const auto run = [&](Navigator& navigator) {
+  const auto run = [&](measurement::Navigator& navigator) {
     reseed(7);
     draw_slow();
     navigator.start(initial(0.1));
@@ -82,18 +84,19 @@ TEST_F(Border, AllRoutesEndThere) {
   };
   const auto all = window(1e9);
   run(*all);
-  const Epoch expected = all->epoch();
-  const auto compare = [&](const Epoch& epoch, double tolerance) {
-    const StateVector sigma = expected.covariance.diagonal().cwiseSqrt();
-    EXPECT_LT(boxminus(epoch, expected).cwiseQuotient(sigma).cwiseAbs().maxCoeff(), tolerance);
-    const StateVector own = epoch.covariance.diagonal().cwiseSqrt();
+  const state::Epoch expected = all->epoch();
+  const auto compare = [&](const state::Epoch& epoch, double tolerance) {
+    const state::StateVector sigma = expected.covariance.diagonal().cwiseSqrt();
+    EXPECT_LT(state::boxminus(epoch, expected).cwiseQuotient(sigma).cwiseAbs().maxCoeff(),
+              tolerance);
+    const state::StateVector own = epoch.covariance.diagonal().cwiseSqrt();
     // Old intervals stay linearized at the scale factors of their time.
     EXPECT_LT((own - sigma).cwiseQuotient(sigma).cwiseAbs().maxCoeff(), 0.3 * tolerance);
   };
   const auto marginalized = window(5);
   run(*marginalized);
   compare(marginalized->epoch(), 0.02);
-  for (const Layout& forward : {layout(), Layout().add(kTemperature, 5)}) {
+  for (const state::Layout& forward : {layout(), state::Layout().add(kTemperature, 5)}) {
     BatchRecorder recorder = batch(forward);
     run(recorder);
     compare(recorder.smoothed().back().epoch(), 0.02);
@@ -107,22 +110,22 @@ TEST_F(Border, KeepsWhatItKnowsOverARestart) {
   const auto navigator = window(10);
   navigator->start(initial(1));
   drive(*navigator, 15, 99, 99);
-  const Epoch before = navigator->epoch();
-  NodeMatrix added = NodeMatrix::Zero();
-  part(added, block::position, block::position).setIdentity();
+  const state::Epoch before = navigator->epoch();
+  state::NodeMatrix added = state::NodeMatrix::Zero();
+  state::part(added, state::block::position, state::block::position).setIdentity();
   navigator->loosen(added);
-  StateMatrix expected = before.covariance;
-  node_part(expected) += added;
+  state::StateMatrix expected = before.covariance;
+  state::node_part(expected) += added;
   EXPECT_LT((navigator->epoch().covariance - expected).norm(), 1e-6);
   EXPECT_LT((navigator->epoch().slow - before.slow).norm(), 1e-12);
   navigator->start(before);
-  EXPECT_LT(boxminus(navigator->epoch(), before).norm(), 1e-7);
+  EXPECT_LT(state::boxminus(navigator->epoch(), before).norm(), 1e-7);
   EXPECT_LT((navigator->epoch().covariance - before.covariance).norm(), 1e-9);
-  Epoch node = before;
+  state::Epoch node = before;
   node.slow.resize(0);
-  node.covariance = NodeMatrix(node_part(before.covariance));
+  node.covariance = state::NodeMatrix(state::node_part(before.covariance));
   navigator->start(node);
-  EXPECT_EQ(navigator->epoch().covariance(kNodeSize, kNodeSize), 25);
+  EXPECT_EQ(navigator->epoch().covariance(state::kNodeSize, state::kNodeSize), 25);
 }
 
 }  // namespace

@@ -22,20 +22,22 @@ class Chain : public ::testing::TestWithParam<int> {
  protected:
   static constexpr int kNodes = 4;
 
-  Chain() : J_(0, kNodeSize * kNodes + slow()), r_(0) {
-    const Eigen::Index size = kNodeSize + slow();
+  Chain() : J_(0, state::kNodeSize * kNodes + slow()), r_(0) {
+    const Eigen::Index size = state::kNodeSize + slow();
     first_ = {random_matrix(rng_, size, 1), random_matrix(rng_, size, size)};
-    add_rows(0, kNodeSize, first_.J, first_.r);
+    add_rows(0, state::kNodeSize, first_.J, first_.r);
     for (int i = 0; i + 1 < kNodes; ++i) {
-      intervals_.push_back(
-          {random_matrix(rng_, kNodeSize, 1), random_matrix(rng_, kNodeSize, kNodeSize),
-           random_matrix(rng_, kNodeSize, kNodeSize), random_matrix(rng_, kNodeSize, slow())});
+      intervals_.push_back({random_matrix(rng_, state::kNodeSize, 1),
+                            random_matrix(rng_, state::kNodeSize, state::kNodeSize),
+                            random_matrix(rng_, state::kNodeSize, state::kNodeSize),
+                            random_matrix(rng_, state::kNodeSize, slow())});
       const IntervalRows& m = intervals_.back();
-      Eigen::MatrixXd J(kNodeSize, 2 * kNodeSize + slow());
+      Eigen::MatrixXd J(state::kNodeSize, 2 * state::kNodeSize + slow());
       J << m.J_x0, m.J_x1, m.J_slow;
-      add_rows(kNodeSize * i, 2 * kNodeSize, J, m.r);
+      add_rows(state::kNodeSize * i, 2 * state::kNodeSize, J, m.r);
       observations_.push_back({random_matrix(rng_, 2, 1), random_matrix(rng_, 2, size)});
-      add_rows(kNodeSize * (i + 1), kNodeSize, observations_[i].J, observations_[i].r);
+      add_rows(state::kNodeSize * (i + 1), state::kNodeSize, observations_[i].J,
+               observations_[i].r);
     }
   }
 
@@ -81,17 +83,18 @@ class Chain : public ::testing::TestWithParam<int> {
   Eigen::MatrixXd J_;
   Eigen::VectorXd r_;
 };
-INSTANTIATE_TEST_SUITE_P(WithoutAndWithABorder, Chain, ::testing::Values(0, 1, 6, kMostSlow));
+INSTANTIATE_TEST_SUITE_P(WithoutAndWithABorder, Chain,
+                         ::testing::Values(0, 1, 6, state::kMostSlow));
 
 TEST_P(Chain, CovarianceOfTheLastNodeAndTheBorderIsTheDenseOne) {
-  const Eigen::Index size = kNodeSize + slow();
+  const Eigen::Index size = state::kNodeSize + slow();
   const Eigen::MatrixXd expected = dense_covariance().bottomRightCorner(size, size);
   EXPECT_LT((covariance(eliminated()) - expected).norm(), 1e-8 * expected.norm());
 }
 
 TEST_P(Chain, SolutionOfTheLastNodeAndTheBorderIsTheDenseOne) {
   const Eigen::VectorXd d = dense_solution();
-  EXPECT_LT((eliminated().solution() - d.tail(kNodeSize + slow())).norm(), 1e-8 * d.norm());
+  EXPECT_LT((eliminated().solution() - d.tail(state::kNodeSize + slow())).norm(), 1e-8 * d.norm());
 }
 
 /// The solutions and covariances of the others, each with the border.
@@ -104,17 +107,20 @@ TEST_P(Chain, EliminatedNodesFollowTheLast) {
     steps.push_back(step(info, i));
     info = steps.back().rest;
   }
-  StateVector d = info.solution();
-  StateMatrix P = covariance(info);
+  state::StateVector d = info.solution();
+  state::StateMatrix P = covariance(info);
   for (int k = kNodes - 1; k-- > 0;) {
-    d.head<kNodeSize>() = steps[k].eliminated(d);
+    d.head<state::kNodeSize>() = steps[k].eliminated(d);
     P = steps[k].covariance(P);
-    EXPECT_LT((d.head<kNodeSize>() - dense.segment<kNodeSize>(kNodeSize * k)).norm(),
-              1e-8 * dense.norm())
+    EXPECT_LT(
+        (d.head<state::kNodeSize>() - dense.segment<state::kNodeSize>(state::kNodeSize * k)).norm(),
+        1e-8 * dense.norm())
         << "node " << k;
     Eigen::VectorXi rows(P.rows());
-    rows << Eigen::VectorXi::LinSpaced(kNodeSize, kNodeSize * k, kNodeSize * (k + 1) - 1),
-        Eigen::VectorXi::LinSpaced(slow(), kNodeSize * kNodes, kNodeSize * kNodes + GetParam() - 1);
+    rows << Eigen::VectorXi::LinSpaced(state::kNodeSize, state::kNodeSize * k,
+                                       state::kNodeSize * (k + 1) - 1),
+        Eigen::VectorXi::LinSpaced(slow(), state::kNodeSize * kNodes,
+                                   state::kNodeSize * kNodes + GetParam() - 1);
     EXPECT_LT((P - dense_P(rows, rows)).norm(), 1e-8 * P.norm()) << "node " << k;
   }
 }
@@ -124,7 +130,7 @@ TEST_P(Chain, InformationAddsUp) {
   for (const int rows : {1, 2, 3, 6}) {
     const NodeInformation before = info;
     const ObservationRows z{random_matrix(rng_, rows, 1),
-                            random_matrix(rng_, rows, kNodeSize + slow())};
+                            random_matrix(rng_, rows, state::kNodeSize + slow())};
     constexpr double kWeight = 0.3;
     info.add(z, kWeight);
     const Eigen::MatrixXd H = before.S.transpose() * before.S + kWeight * z.J.transpose() * z.J;
@@ -136,11 +142,12 @@ TEST_P(Chain, InformationAddsUp) {
 
 TEST_P(Chain, TheBorderMayBeCountedFromElsewhere) {
   NodeInformation info = eliminated();
-  const StateVector before = info.solution();
-  const SlowVector moved = random_matrix(rng_, slow(), 1);
+  const state::StateVector before = info.solution();
+  const state::SlowVector moved = random_matrix(rng_, slow(), 1);
   info.move_border(moved);
-  const StateVector after = info.solution();
-  EXPECT_LT((after.head<kNodeSize>() - before.head<kNodeSize>()).norm(), 1e-9 * before.norm());
+  const state::StateVector after = info.solution();
+  EXPECT_LT((after.head<state::kNodeSize>() - before.head<state::kNodeSize>()).norm(),
+            1e-9 * before.norm());
   EXPECT_LT((after.tail(slow()) + moved - before.tail(slow())).norm(), 1e-9 * before.norm());
 }
 
@@ -149,26 +156,26 @@ TEST_P(Chain, TheBorderMayBeCountedFromElsewhere) {
 TEST(ChainOfAnOutage, KeepsWhatLittleIsKnown) {
   IntervalRows step;
   step.r.setZero();
-  step.J_slow = NodeBySlow(kNodeSize, 0);
-  step.J_x1 = 1e4 * NodeMatrix::Identity();
+  step.J_slow = state::NodeBySlow(state::kNodeSize, 0);
+  step.J_x1 = 1e4 * state::NodeMatrix::Identity();
   step.J_x0 = -step.J_x1;
   NodeInformation info;
-  info.S = 1e-6 * NodeMatrix::Identity();
+  info.S = 1e-6 * state::NodeMatrix::Identity();
   constexpr int kSteps = 3600;
   for (int i = 0; i < kSteps; ++i) info = eliminate(info, step).rest;
-  const NodeVector variance = covariance(info).diagonal();
+  const state::NodeVector variance = covariance(info).diagonal();
   EXPECT_LT((variance.array() / (1e12 + kSteps * 1e-8) - 1).abs().maxCoeff(), 1e-9);
   const ObservationRows fix{Eigen::Vector3d::Zero(),
-                            100 * Eigen::Matrix<double, 3, kNodeSize>::Identity()};
+                            100 * Eigen::Matrix<double, 3, state::kNodeSize>::Identity()};
   info.add(fix);
-  const NodeVector after = covariance(info).diagonal();
+  const state::NodeVector after = covariance(info).diagonal();
   EXPECT_LT((after.head<3>().array() / 1e-4 - 1).abs().maxCoeff(), 1e-9);
   EXPECT_LT((after.tail<12>() - variance.tail<12>()).norm(), 1e-9 * variance.norm());
 }
 
 TEST(ChainOfNothing, AnUndeterminedNodeIsAnError) {
   IntervalRows nothing;
-  nothing.J_slow = NodeBySlow(kNodeSize, 0);
+  nothing.J_slow = state::NodeBySlow(state::kNodeSize, 0);
   nothing.J_x0.setZero();
   nothing.J_x1.setZero();
   nothing.r.setZero();

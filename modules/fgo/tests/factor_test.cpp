@@ -21,12 +21,12 @@ using namespace ceres;  // NOLINT: EXPECT_THAT_MANIFOLD_INVARIANTS_HOLD needs it
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-NodeState random_state(std::mt19937& rng, double rotation) {
+state::NodeState random_state(std::mt19937& rng, double rotation) {
   std::uniform_real_distribution<double> u(-1, 1);
   const auto draw = [&](double scale) {
     return Vector3d(scale * Vector3d(u(rng), u(rng), u(rng)));
   };
-  NodeState x;
+  state::NodeState x;
   x.p_w_b = draw(10);
   x.v_w_b = draw(5);
   x.q_w_b = so3::exp(draw(rotation));
@@ -34,14 +34,14 @@ NodeState random_state(std::mt19937& rng, double rotation) {
   return x;
 }
 
-StateBlock block_of(const NodeState& x) {
+StateBlock block_of(const state::NodeState& x) {
   StateBlock block;
   write_block(x, block.data());
   return block;
 }
 
-Preintegration lively_preintegration() {
-  ImuNoise noise;
+preintegration::Preintegration lively_preintegration() {
+  imu::ImuNoise noise;
   noise.gyro_noise_density = 1e-2;
   noise.accel_noise_density = 1e-1;
   noise.gyro_bias_sigma = 1e-2;
@@ -51,8 +51,8 @@ Preintegration lively_preintegration() {
   return testing::preintegrate(motion.increments(2, 3, 100), noise);
 }
 
-EarthModel fast_earth() {
-  EarthModel earth = testing::wuhan_earth();
+preintegration::EarthModel fast_earth() {
+  preintegration::EarthModel earth = testing::wuhan_earth();
   earth.omega_ie_w *= 1000;  // so that its Jacobians do not hide below the differences' rounding
   return earth;
 }
@@ -60,9 +60,10 @@ EarthModel fast_earth() {
 /// Blocks of a factor: nodes, and the border if there is one.
 using Blocks = std::vector<std::vector<double>>;
 
-Blocks blocks_of(const std::vector<NodeState>& nodes, const std::vector<double>& border = {}) {
+Blocks blocks_of(const std::vector<state::NodeState>& nodes,
+                 const std::vector<double>& border = {}) {
   Blocks blocks;
-  for (const NodeState& node : nodes) {
+  for (const state::NodeState& node : nodes) {
     const StateBlock block = block_of(node);
     blocks.emplace_back(block.begin(), block.end());
   }
@@ -128,27 +129,27 @@ INSTANTIATE_TEST_SUITE_P(IdentityTinyAndLarge, FactorAtRotation,
 
 TEST_P(FactorAtRotation, ManifoldInvariants) {
   const StateManifold manifold;
-  const NodeState at = random_state(rng_, GetParam());
+  const state::NodeState at = random_state(rng_, GetParam());
   std::uniform_real_distribution<double> u(-0.5, 0.5);
   Vector delta(15), x(16), y(16);
   for (int i = 0; i < 15; ++i) delta[i] = u(rng_);
   write_block(at, x.data());
-  const NodeVector step = 0.8 * delta.reverse();
-  write_block(boxplus(at, step), y.data());  // same hemisphere as x
+  const state::NodeVector step = 0.8 * delta.reverse();
+  write_block(state::boxplus(at, step), y.data());  // same hemisphere as x
   EXPECT_THAT_MANIFOLD_INVARIANTS_HOLD(manifold, x, delta, y, 1e-9);
 }
 
 TEST_P(FactorAtRotation, PreintegrationJacobians) {
   const PreintegrationFactor factor(lively_preintegration(), fast_earth());
-  const NodeState x0 = random_state(rng_, GetParam());
-  const NodeState x1 = random_state(rng_, GetParam());
+  const state::NodeState x0 = random_state(rng_, GetParam());
+  const state::NodeState x1 = random_state(rng_, GetParam());
   probe(factor, blocks_of({x0, x1}));
-  const NodeState close = predict(x0, factor.preintegration(), factor.earth());
+  const state::NodeState close = predict(x0, factor.preintegration(), factor.earth());
   probe(factor, blocks_of({x0, close}));
 }
 
-GraphContext wuhan(const Layout& layout = {}) {
-  return {LocalFrame({0.53, 2.0, 20}), PreintegrationModel::full, layout};
+GraphContext wuhan(const state::Layout& layout = {}) {
+  return {geodesy::LocalFrame({0.53, 2.0, 20}), preintegration::PreintegrationModel::full, layout};
 }
 
 GnssFix fix_near_origin() {
@@ -164,51 +165,54 @@ GnssFix fix_near_origin() {
 /// Geodetic coordinates are rounded to 1e-9 m, so differences need long steps.
 TEST_P(FactorAtRotation, ObservationJacobians) {
   const GraphContext context = wuhan();
-  const NodeState x = random_state(rng_, GetParam());
+  const state::NodeState x = random_state(rng_, GetParam());
   const Vector3d rate_b(0.3, -0.2, 0.7);
-  for (const ObservationPtr& z :
-       {gnss_position(fix_near_origin()), gnss_velocity(fix_near_origin())}) {
-    const ObservationFactor factor({z, rate_b}, x, SlowVector(0), context);
+  for (const measurement::ObservationPtr& z : {measurement::gnss_position(fix_near_origin()),
+                                               measurement::gnss_velocity(fix_near_origin())}) {
+    const ObservationFactor factor({z, rate_b}, x, state::SlowVector(0), context);
     probe(factor, blocks_of({x}), 1e-3, 1e-5);
   }
 }
 
 /// A speed whose scale is a block, and a height.
-class ScaledSpeed final : public Observation {
+class ScaledSpeed final : public measurement::Observation {
  public:
-  static constexpr Block kScale{"speed_scale", 1, "1"};
+  static constexpr state::Block kScale{"speed_scale", 1, "1"};
   std::string_view name() const override { return "scaled_speed"; }
-  Linearized linearize(const NavState& x, const Vector3d&, const Layout& layout) const override {
-    const Eigen::Index column = kNodeSize + *layout.slow_index(kScale);
+  state::Linearized linearize(const state::NavState& x, const Vector3d&,
+                              const state::Layout& layout) const override {
+    const Eigen::Index column = state::kNodeSize + *layout.slow_index(kScale);
     const double speed = x.velocity_n.norm();
-    Linearized z(2, layout.size());
+    state::Linearized z(2, layout.size());
     z.r << 3 - (1 + x.slow[0]) * speed, 1 - x.position.height;
-    z.H.row(0).segment<3>(block::velocity.offset) =
+    z.H.row(0).segment<3>(state::block::velocity.offset) =
         (1 + x.slow[0]) / speed * x.velocity_n.transpose();
     z.H(0, column) = speed;
-    z.H(1, block::position.offset + 2) = -1;
+    z.H(1, state::block::position.offset + 2) = -1;
     z.R = Eigen::Matrix2d::Identity() * 0.3;
     return z;
   }
 };
 
 TEST_P(FactorAtRotation, ObservationJacobiansWithABorder) {
-  const GraphContext context = wuhan(Layout().add(ScaledSpeed::kScale, 0.1));
-  const NodeState x = random_state(rng_, GetParam());
+  const GraphContext context = wuhan(state::Layout().add(ScaledSpeed::kScale, 0.1));
+  const state::NodeState x = random_state(rng_, GetParam());
   const ObservationFactor factor({std::make_shared<ScaledSpeed>(), Vector3d::Zero()}, x,
-                                 SlowVector::Constant(1, 0.2), context);
+                                 state::SlowVector::Constant(1, 0.2), context);
   probe(factor, blocks_of({x}, {0.2}), 1e-3, 1e-5);
 }
 
 TEST_P(FactorAtRotation, PriorJacobians) {
   std::uniform_real_distribution<double> u(-1, 1);
   for (const int slow : {0, 2}) {
-    StateMatrix A(kNodeSize + slow, kNodeSize + slow);
+    state::StateMatrix A(state::kNodeSize + slow, state::kNodeSize + slow);
     for (double& a : A.reshaped()) a = u(rng_);
-    const StateMatrix covariance =
-        A * A.transpose() + StateMatrix::Identity(kNodeSize + slow, kNodeSize + slow);
-    const NodeState at = random_state(rng_, GetParam());
-    SquareRootPrior prior = prior_from_covariance(at, SlowVector::Constant(slow, 0.1), covariance);
+    const state::StateMatrix covariance =
+        A * A.transpose() +
+        state::StateMatrix::Identity(state::kNodeSize + slow, state::kNodeSize + slow);
+    const state::NodeState at = random_state(rng_, GetParam());
+    SquareRootPrior prior =
+        prior_from_covariance(at, state::SlowVector::Constant(slow, 0.1), covariance);
     prior.r.setLinSpaced(-1, 1);
     const std::vector<double> border(slow, 0.3);
     probe(PriorFactor(prior), blocks_of({at}, border));
@@ -217,10 +221,10 @@ TEST_P(FactorAtRotation, PriorJacobians) {
 }
 
 TEST_P(FactorAtRotation, PreintegrationWithABorder) {
-  const Layout layout = Layout().add(ScaledSpeed::kScale, 0.1);
+  const state::Layout layout = state::Layout().add(ScaledSpeed::kScale, 0.1);
   const PreintegrationFactor factor(lively_preintegration(), fast_earth(), layout);
-  const NodeState x0 = random_state(rng_, GetParam());
-  const NodeState x1 = random_state(rng_, GetParam());
+  const state::NodeState x0 = random_state(rng_, GetParam());
+  const state::NodeState x1 = random_state(rng_, GetParam());
   probe(factor, blocks_of({x0, x1}, {0.2}));
 }
 
@@ -228,7 +232,7 @@ TEST_P(FactorAtRotation, PreintegrationWithABorder) {
 TEST(ObservationFactor, IsTheCartesianFixFarFromTheOrigin) {
   const GraphContext context = wuhan();
   std::mt19937 rng{7};
-  NodeState x = random_state(rng, 0.8);
+  state::NodeState x = random_state(rng, 0.8);
   x.p_w_b = {35e3, -36e3, -20};
   // Steps along the ellipsoid differ from straight ones by the square of the arm over the Earth's
   // radius; without an arm, the rounding of geodetic coordinates is left.
@@ -242,7 +246,8 @@ TEST(ObservationFactor, IsTheCartesianFixFarFromTheOrigin) {
     fix.antenna =
         context.frame.to_geodetic(x.p_w_b + x.q_w_b * fix.p_b_a + Vector3d(0.02, -0.01, 0.03));
     const testing::CartesianFix other = testing::cartesian(fix, context.frame);
-    const ObservationRows z = linearize({gnss_position(fix)}, x, SlowVector(0), context);
+    const ObservationRows z =
+        linearize({measurement::gnss_position(fix)}, x, state::SlowVector(0), context);
     const Matrix3d R_w_n = context.frame.R_w_n(fix.antenna);
     EXPECT_LT((R_w_n * z.r + testing::antenna_innovation(x, other)).norm(), c.tolerance);
     EXPECT_LT((R_w_n * z.J - testing::antenna_jacobian(x, other)).norm(), 1e-6);
@@ -250,34 +255,40 @@ TEST(ObservationFactor, IsTheCartesianFixFarFromTheOrigin) {
 }
 
 TEST(Factor, WhiteningIsThatOfTheCovariance) {
-  const Preintegration pre = lively_preintegration();
-  const EarthModel earth = testing::wuhan_earth();
+  const preintegration::Preintegration pre = lively_preintegration();
+  const preintegration::EarthModel earth = testing::wuhan_earth();
   const PreintegrationFactor factor(pre, earth);
   std::mt19937 rng{3};
-  const NodeState x0 = random_state(rng, 0.5);
-  const NodeState x1 = boxplus(predict(x0, pre, earth), 0.01 * NodeVector::Ones());
-  const NodeVector r = motion_residual_value(x0, x1, pre, earth);
+  const state::NodeState x0 = random_state(rng, 0.5);
+  const state::NodeState x1 =
+      state::boxplus(predict(x0, pre, earth), 0.01 * state::NodeVector::Ones());
+  const state::NodeVector r = preintegration::motion_residual_value(x0, x1, pre, earth);
   const double mahalanobis = r.dot(pre.covariance.ldlt().solve(r));
-  EXPECT_NEAR(factor.linearize(x0, x1, SlowVector(0)).r.squaredNorm(), mahalanobis,
+  EXPECT_NEAR(factor.linearize(x0, x1, state::SlowVector(0)).r.squaredNorm(), mahalanobis,
               1e-9 * mahalanobis);
 }
 
 TEST(Factor, ThePreintegrationComesBackFromItsSquareRoot) {
-  const Preintegration pre = lively_preintegration();
-  const NodeMatrix back = PreintegrationFactor(pre, fast_earth()).preintegration().covariance;
-  const NodeVector scale = pre.covariance.diagonal().cwiseSqrt().cwiseInverse();
+  const preintegration::Preintegration pre = lively_preintegration();
+  const state::NodeMatrix back =
+      PreintegrationFactor(pre, fast_earth()).preintegration().covariance;
+  const state::NodeVector scale = pre.covariance.diagonal().cwiseSqrt().cwiseInverse();
   EXPECT_LT((scale.asDiagonal() * (back - pre.covariance) * scale.asDiagonal()).norm(), 1e-9);
 }
 
 TEST(Factor, RefusesCovariancesThatAreNot) {
-  EXPECT_THROW(PreintegrationFactor(Preintegration{}, EarthModel{}), std::invalid_argument);
+  EXPECT_THROW(PreintegrationFactor(preintegration::Preintegration{}, preintegration::EarthModel{}),
+               std::invalid_argument);
   GnssFix fix = fix_near_origin();
   fix.position_covariance = -Matrix3d::Identity();
   const GraphContext context = wuhan();
-  EXPECT_THROW((ObservationFactor{{gnss_position(fix)}, NodeState{}, SlowVector(0), context}),
-               std::invalid_argument);
-  EXPECT_THROW(prior_from_covariance(NodeState{}, SlowVector(0), NodeMatrix::Zero()),
-               std::invalid_argument);
+  EXPECT_THROW(
+      (ObservationFactor{
+          {measurement::gnss_position(fix)}, state::NodeState{}, state::SlowVector(0), context}),
+      std::invalid_argument);
+  EXPECT_THROW(
+      prior_from_covariance(state::NodeState{}, state::SlowVector(0), state::NodeMatrix::Zero()),
+      std::invalid_argument);
 }
 
 }  // namespace

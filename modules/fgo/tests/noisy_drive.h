@@ -21,8 +21,8 @@ using Eigen::Vector3d;
 
 inline const Geodetic kOrigin{30.45 * kDegree, 114.47 * kDegree, 20};
 
-inline ImuNoise test_noise() {
-  ImuNoise noise;
+inline imu::ImuNoise test_noise() {
+  imu::ImuNoise noise;
   noise.gyro_noise_density = 5e-5;
   noise.accel_noise_density = 5e-4;
   noise.gyro_bias_sigma = 1e-5;
@@ -45,13 +45,13 @@ class NoisyDrive : public ::testing::Test {
     return sigma * Vector3d(normal_(rng_), normal_(rng_), normal_(rng_));
   }
 
-  Epoch initial(double scale) {
-    const NodeState x = motion_.state(0);
-    const NodeVector sigma = initial_sigma();
-    NodeVector error;
-    for (int i = 0; i < kNodeSize; ++i) error[i] = scale * sigma[i] * normal_(rng_);
-    const NodeState start = boxplus(x, error);
-    Epoch epoch;
+  state::Epoch initial(double scale) {
+    const state::NodeState x = motion_.state(0);
+    const state::NodeVector sigma = initial_sigma();
+    state::NodeVector error;
+    for (int i = 0; i < state::kNodeSize; ++i) error[i] = scale * sigma[i] * normal_(rng_);
+    const state::NodeState start = state::boxplus(x, error);
+    state::Epoch epoch;
     epoch.position = frame_.to_geodetic(start.p_w_b);
     epoch.velocity_n = start.v_w_b;
     epoch.q_n_b = start.q_w_b;
@@ -60,8 +60,8 @@ class NoisyDrive : public ::testing::Test {
     return epoch;
   }
 
-  static NodeVector initial_sigma() {
-    NodeVector sigma;
+  static state::NodeVector initial_sigma() {
+    state::NodeVector sigma;
     sigma << Vector3d::Constant(0.05), Vector3d::Constant(0.05), Vector3d(5e-3, 5e-3, 2e-2),
         Vector3d::Constant(2e-4), Vector3d::Constant(1e-2);
     return sigma;
@@ -87,7 +87,7 @@ class NoisyDrive : public ::testing::Test {
 
   /// Runs to `seconds` with a fix every second but in [outage_begin, outage_end).
   template <class Each>
-  void run(Navigator& navigator, int seconds, double outage_begin, double outage_end,
+  void run(measurement::Navigator& navigator, int seconds, double outage_begin, double outage_end,
            const Each& each) {
     constexpr int64_t kStep = 10'000'000;
     for (int second = 1; second <= seconds; ++second) {
@@ -96,30 +96,32 @@ class NoisyDrive : public ::testing::Test {
       if (second >= outage_begin && second < outage_end)
         navigator.hold();
       else
-        navigator.update(gnss_position(fix_at(second, 0.02)));
+        navigator.update(measurement::gnss_position(fix_at(second, 0.02)));
       each(second);
     }
   }
 
-  NodeVector error(const Epoch& epoch) const {
-    NodeState x;
+  state::NodeVector error(const state::Epoch& epoch) const {
+    state::NodeState x;
     const Matrix3d R_w_n = frame_.R_w_n(epoch.position);
     x.p_w_b = frame_.to_local(epoch.position);
     x.v_w_b = R_w_n * epoch.velocity_n;
     x.q_w_b = Eigen::Quaterniond(R_w_n) * epoch.q_n_b;
     x.bias = epoch.bias;
-    return boxminus(motion_.state(to_seconds_of(epoch)), x);
+    return state::boxminus(motion_.state(to_seconds_of(epoch)), x);
   }
-  static double to_seconds_of(const Epoch& epoch) { return 1e-9 * static_cast<double>(epoch.t_ns); }
+  static double to_seconds_of(const state::Epoch& epoch) {
+    return 1e-9 * static_cast<double>(epoch.t_ns);
+  }
 
-  LocalFrame frame_;
+  geodesy::LocalFrame frame_;
   ClosedFormMotion motion_;
   std::mt19937 rng_{42};
   std::normal_distribution<double> normal_;
 };
 
-inline FgoOptions window_of(double seconds) {
-  FgoOptions options;
+inline fgo::FgoOptions window_of(double seconds) {
+  fgo::FgoOptions options;
   options.window_s = seconds;
   return options;
 }

@@ -7,25 +7,25 @@
 /// A drive with things that do not change: a temperature, that ranges depend on, and scale factors.
 namespace foucault::testing {
 
-inline constexpr Block kTemperature{"temperature", 1, "K"};
+inline constexpr state::Block kTemperature{"temperature", 1, "K"};
 inline constexpr double kPerKelvin = 0.1;  // [m/K]
 inline constexpr double kRangeSigma = 0.05;
 
 /// Range to a beacon, too long by kPerKelvin times the temperature.
-class BeaconRange final : public Observation {
+class BeaconRange final : public measurement::Observation {
  public:
   BeaconRange(const Geodetic& beacon, double range) : beacon_(beacon), range_(range) {}
 
   std::string_view name() const override { return "beacon"; }
 
-  Linearized linearize(const NavState& x, const Vector3d& /*rate_b*/,
-                       const Layout& layout) const override {
-    const Vector3d way = displacement_n(x.position, beacon_, Place(x.position));
+  state::Linearized linearize(const state::NavState& x, const Vector3d& /*rate_b*/,
+                              const state::Layout& layout) const override {
+    const Vector3d way = geodesy::displacement_n(x.position, beacon_, geodesy::Place(x.position));
     const int temperature = *layout.slow_index(kTemperature);
-    Linearized z(1, layout.size());
+    state::Linearized z(1, layout.size());
     z.r[0] = range_ - way.norm() - kPerKelvin * x.slow[temperature];
-    columns_of(z.H, block::position) = -way.normalized().transpose();
-    z.H(0, kNodeSize + temperature) = kPerKelvin;
+    state::columns_of(z.H, state::block::position) = -way.normalized().transpose();
+    z.H(0, state::kNodeSize + temperature) = kPerKelvin;
     z.R(0, 0) = kRangeSigma * kRangeSigma;
     return z;
   }
@@ -37,8 +37,11 @@ class BeaconRange final : public Observation {
 
 class SlowDrive : public NoisyDrive {
  protected:
-  static Layout layout() {
-    return Layout().add(kTemperature, 5).add(block::gyro_scale, 3e-3).add(block::accel_scale, 3e-3);
+  static state::Layout layout() {
+    return state::Layout()
+        .add(kTemperature, 5)
+        .add(state::block::gyro_scale, 3e-3)
+        .add(state::block::accel_scale, 3e-3);
   }
 
   /// Draws what does not change, within its prior.
@@ -48,16 +51,16 @@ class SlowDrive : public NoisyDrive {
     scale_.accel = draw(3e-3);
   }
 
-  SlowVector slow() const {
-    SlowVector all(7);
+  state::SlowVector slow() const {
+    state::SlowVector all(7);
     all << temperature_, scale_.gyro, scale_.accel;
     return all;
   }
 
-  ObservationPtr range_at(double t) {
+  measurement::ObservationPtr range_at(double t) {
     const Geodetic beacon = frame_.to_geodetic({300, 200, -50});
     const Geodetic here = frame_.to_geodetic(motion_.p(t));
-    const double range = displacement_n(here, beacon, Place(here)).norm();
+    const double range = geodesy::displacement_n(here, beacon, geodesy::Place(here)).norm();
     return std::make_shared<BeaconRange>(
         beacon, range + kPerKelvin * temperature_ + kRangeSigma * normal_(rng_));
   }
@@ -70,7 +73,7 @@ class SlowDrive : public NoisyDrive {
   }
 
   /// Fixes and ranges every second but in [outage_begin, outage_end).
-  void drive(Navigator& navigator, int seconds, int outage_begin, int outage_end) {
+  void drive(measurement::Navigator& navigator, int seconds, int outage_begin, int outage_end) {
     constexpr int64_t kStep = 10'000'000;
     for (int second = 1; second <= seconds; ++second) {
       for (int64_t t = (second - 1) * 1'000'000'000LL; t < second * 1'000'000'000LL; t += kStep)
@@ -79,20 +82,20 @@ class SlowDrive : public NoisyDrive {
         navigator.hold();
         continue;
       }
-      navigator.update(gnss_position(fix_at(second, 0.02)));
+      navigator.update(measurement::gnss_position(fix_at(second, 0.02)));
       navigator.update(range_at(second));
     }
   }
 
   /// Of all blocks.
-  StateVector whole_error(const Epoch& epoch) const {
-    StateVector e(kNodeSize + slow().size());
+  state::StateVector whole_error(const state::Epoch& epoch) const {
+    state::StateVector e(state::kNodeSize + slow().size());
     e << error(epoch), slow() - epoch.slow;
     return e;
   }
 
   double temperature_ = 0;
-  ImuScale scale_;
+  state::ImuScale scale_;
 };
 
 /// Sums of squared errors by their covariance.
@@ -100,15 +103,15 @@ struct Consistency {
   double node = 0, temperature = 0, scale = 0, all = 0;
   int runs = 0;
 
-  void add(const StateVector& e, const Epoch& epoch) {
+  void add(const state::StateVector& e, const state::Epoch& epoch) {
     const auto part_of = [&](Eigen::Index at, Eigen::Index rows) {
       const Eigen::VectorXd own = e.segment(at, rows);
       const Eigen::MatrixXd P = epoch.covariance.block(at, at, rows, rows);
       return own.dot(P.ldlt().solve(own));
     };
-    node += part_of(0, kNodeSize);
-    temperature += part_of(kNodeSize, 1);
-    scale += part_of(kNodeSize + 1, 6);
+    node += part_of(0, state::kNodeSize);
+    temperature += part_of(state::kNodeSize, 1);
+    scale += part_of(state::kNodeSize + 1, 6);
     all += part_of(0, e.size());
     ++runs;
   }
@@ -118,10 +121,10 @@ struct Consistency {
     const auto expect = [&](double sum, double rows) {
       EXPECT_NEAR(sum, rows * runs, 3.3 * std::sqrt(2 * rows * runs));
     };
-    expect(node, kNodeSize);
+    expect(node, state::kNodeSize);
     expect(temperature, 1);
     expect(scale, 6);
-    expect(all, kNodeSize + 7);
+    expect(all, state::kNodeSize + 7);
   }
 };
 

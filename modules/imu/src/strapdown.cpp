@@ -26,39 +26,40 @@ SensedMotion sensed_motion(const ImuIncrement& previous, const ImuIncrement& inc
 
 }  // namespace
 
-ImuIncrement without_bias(const ImuIncrement& increment, const ImuBias& bias) {
+ImuIncrement without_bias(const ImuIncrement& increment, const state::ImuBias& bias) {
   ImuIncrement compensated = increment;
   compensated.dtheta_b -= bias.gyro * increment.dt();
   compensated.dvel_b -= bias.accel * increment.dt();
   return compensated;
 }
 
-ImuIncrement without_scale(const ImuIncrement& increment, const ImuScale& scale) {
+ImuIncrement without_scale(const ImuIncrement& increment, const state::ImuScale& scale) {
   ImuIncrement compensated = increment;
   compensated.dtheta_b.array() /= 1 + scale.gyro.array();
   compensated.dvel_b.array() /= 1 + scale.accel.array();
   return compensated;
 }
 
-NavState advance(const NavState& state, const ImuIncrement& previous,
-                 const ImuIncrement& increment) {
+state::NavState advance(const state::NavState& state, const ImuIncrement& previous,
+                        const ImuIncrement& increment) {
   const double dt = increment.dt();
   const SensedMotion sensed = sensed_motion(previous, increment);
   const Eigen::Vector3d sensed_velocity_n = state.q_n_b * sensed.velocity_b;
 
-  const Geodetic mid_position =
-      displaced(state.position, 0.5 * dt * state.velocity_n, Place(state.position));
-  const Place mid(mid_position);
+  const Geodetic mid_position = geodesy::displaced(state.position, 0.5 * dt * state.velocity_n,
+                                                   geodesy::Place(state.position));
+  const geodesy::Place mid(mid_position);
   const Eigen::Vector3d mid_v_n =
       state.velocity_n + 0.5 * (sensed_velocity_n + dt * mid.free_acceleration_n(state.velocity_n));
   const Eigen::Vector3d frame_rotation_n = (mid.omega_ie_n + mid.omega_en_n(mid_v_n)) * dt;
 
-  NavState next = state;
+  state::NavState next = state;
   next.t_ns = increment.t_end_ns;
   next.velocity_n = state.velocity_n + sensed_velocity_n -
                     0.5 * frame_rotation_n.cross(sensed_velocity_n) +
                     dt * mid.free_acceleration_n(mid_v_n);
-  next.position = displaced(state.position, 0.5 * dt * (state.velocity_n + next.velocity_n), mid);
+  next.position =
+      geodesy::displaced(state.position, 0.5 * dt * (state.velocity_n + next.velocity_n), mid);
   next.q_n_b =
       (so3::exp(-frame_rotation_n) * state.q_n_b * so3::exp(sensed.rotation_b)).normalized();
   return next;

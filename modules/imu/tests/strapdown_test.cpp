@@ -15,17 +15,17 @@
 namespace foucault::imu {
 namespace {
 
-ScenarioOptions scenario(const std::string& name, double duration_s) {
-  ScenarioOptions options;
+simulation::ScenarioOptions scenario(const std::string& name, double duration_s) {
+  simulation::ScenarioOptions options;
   options.name = name;
   options.duration_s = duration_s;
   options.seed = 3;
   return options;
 }
 
-NavState true_state(const Trajectory& trajectory, int64_t t_ns) {
-  const Motion motion = trajectory.at(to_seconds(t_ns));
-  NavState state;
+state::NavState true_state(const simulation::Trajectory& trajectory, int64_t t_ns) {
+  const simulation::Motion motion = trajectory.at(to_seconds(t_ns));
+  state::NavState state;
   state.t_ns = t_ns;
   state.position = motion.position;
   state.velocity_n = motion.velocity_n;
@@ -49,30 +49,33 @@ struct Closure {
 };
 
 /// Integrates exact increments from the exact state and compares with the exact end.
-Closure free_inertial_closure(const Trajectory& trajectory, const Window& run) {
+Closure free_inertial_closure(const simulation::Trajectory& trajectory, const Window& run) {
   const int64_t begin_ns = nanoseconds(run.begin_s);
   const int64_t step_ns = nanoseconds(1 / run.rate_hz);
   const int64_t steps = static_cast<int64_t>(std::lround(run.length_s * run.rate_hz));
-  NavState state = true_state(trajectory, begin_ns);
+  state::NavState state = true_state(trajectory, begin_ns);
   ImuIncrement previous;
   for (int64_t k = 0; k < steps; ++k) {
-    ImuIncrement increment = exact_increment(trajectory, Eigen::Quaterniond::Identity(), 0,
-                                             begin_ns + k * step_ns, begin_ns + (k + 1) * step_ns);
+    ImuIncrement increment =
+        simulation::exact_increment(trajectory, Eigen::Quaterniond::Identity(), 0,
+                                    begin_ns + k * step_ns, begin_ns + (k + 1) * step_ns);
     if (!run.feel_earth) {
-      increment.dtheta_b -=
-          state.q_n_b.conjugate() * wgs84::earth_rate_n(state.position.latitude) * increment.dt();
+      increment.dtheta_b -= state.q_n_b.conjugate() *
+                            geodesy::wgs84::earth_rate_n(state.position.latitude) * increment.dt();
     }
     state = advance(state, run.use_previous ? previous : ImuIncrement{}, increment);
     previous = increment;
   }
-  const NavState truth = true_state(trajectory, begin_ns + steps * step_ns);
-  return {displacement_n(truth.position, state.position, Place(truth.position)).norm(),
+  const state::NavState truth = true_state(trajectory, begin_ns + steps * step_ns);
+  return {geodesy::displacement_n(truth.position, state.position, geodesy::Place(truth.position))
+              .norm(),
           (state.velocity_n - truth.velocity_n).norm(),
           so3::log(truth.q_n_b.conjugate() * state.q_n_b).norm()};
 }
 
 /// The worst of several windows of a trip.
-Closure worst_closure(const Trajectory& trajectory, Window run, double first_s, double last_s) {
+Closure worst_closure(const simulation::Trajectory& trajectory, Window run, double first_s,
+                      double last_s) {
   Closure worst;
   for (run.begin_s = first_s; run.begin_s + run.length_s <= last_s; run.begin_s += run.length_s) {
     const Closure closure = free_inertial_closure(trajectory, run);
@@ -84,7 +87,7 @@ Closure worst_closure(const Trajectory& trajectory, Window run, double first_s, 
 }
 
 TEST(Strapdown, CityDriveClosesBelowAMillimetre) {
-  const Trajectory city = make_trajectory(scenario("city", 460));
+  const simulation::Trajectory city = simulation::make_trajectory(scenario("city", 460));
   const Closure worst = worst_closure(city, Window{}, 40, 460);
   // Second-order terms leave about 10 um and 10 nm/s; a wrong term leaves far more.
   EXPECT_LT(worst.position, 5e-5);
@@ -93,7 +96,7 @@ TEST(Strapdown, CityDriveClosesBelowAMillimetre) {
 }
 
 TEST(Strapdown, AirlinerClosesBelowAMillimetre) {
-  const Trajectory airliner = make_trajectory(scenario("airliner", 1500));
+  const simulation::Trajectory airliner = simulation::make_trajectory(scenario("airliner", 1500));
   const Closure worst = worst_closure(airliner, Window{}, 600, 1200);
   // Second-order terms leave about 10 um and 10 nm/s; a wrong term leaves far more.
   EXPECT_LT(worst.position, 5e-5);
@@ -102,7 +105,7 @@ TEST(Strapdown, AirlinerClosesBelowAMillimetre) {
 }
 
 TEST(Strapdown, ErrorFallsAtLeastWithTheSquareOfTheInterval) {
-  const Trajectory city = make_trajectory(scenario("city", 280));
+  const simulation::Trajectory city = simulation::make_trajectory(scenario("city", 280));
   Window run;
   run.begin_s = 100;
   run.rate_hz = 12.5;
@@ -116,11 +119,11 @@ TEST(Strapdown, ErrorFallsAtLeastWithTheSquareOfTheInterval) {
 }
 
 TEST(Strapdown, ConingAndScullingTermsMatterUnderVibration) {
-  ScenarioOptions options = scenario("city", 180);
+  simulation::ScenarioOptions options = scenario("city", 180);
   options.vibration_hz = 10;
   options.vibration_m_s2 = 2;
   options.vibration_deg = 0.2;
-  const Trajectory shaking = make_trajectory(options);
+  const simulation::Trajectory shaking = simulation::make_trajectory(options);
   Window run;
   run.begin_s = 60;
   const Closure with = free_inertial_closure(shaking, run);
@@ -132,7 +135,7 @@ TEST(Strapdown, ConingAndScullingTermsMatterUnderVibration) {
 }
 
 TEST(Strapdown, GyroscopesBlindToTheEarthFailTheClosure) {
-  const Trajectory city = make_trajectory(scenario("city", 160));
+  const simulation::Trajectory city = simulation::make_trajectory(scenario("city", 160));
   Window run;
   run.begin_s = 60;
   run.feel_earth = false;
@@ -142,11 +145,11 @@ TEST(Strapdown, GyroscopesBlindToTheEarthFailTheClosure) {
 
 TEST(Strapdown, ClosesAcrossTheDateLineAndAtHighLatitude) {
   for (const double latitude_deg : {80.0, -75.0, 0.0}) {
-    ScenarioOptions options = scenario("airliner", 1300);
+    simulation::ScenarioOptions options = scenario("airliner", 1300);
     options.latitude_deg = latitude_deg;
     options.longitude_deg = 179.2;
     options.heading_deg = 90;
-    const Trajectory airliner = make_trajectory(options);
+    const simulation::Trajectory airliner = simulation::make_trajectory(options);
     Window run;
     run.begin_s = 100;
     run.length_s = 1200;
@@ -161,10 +164,10 @@ TEST(Strapdown, ClosesAcrossTheDateLineAndAtHighLatitude) {
 }
 
 TEST(Strapdown, RestStaysAtRestForAnHour) {
-  NavState state;
+  state::NavState state;
   state.position = {45 * kDegree, 7 * kDegree, 300};
   state.q_n_b = so3::from_euler({0.02, -0.03, 1.0});
-  const Place place(state.position);
+  const geodesy::Place place(state.position);
   const Geodetic start = state.position;
   ImuIncrement increment;
   increment.t_end_ns = nanoseconds(0.01);
@@ -175,20 +178,21 @@ TEST(Strapdown, RestStaysAtRestForAnHour) {
     increment.t_end_ns = state.t_ns + nanoseconds(0.01);
     state = advance(state, k == 0 ? ImuIncrement{} : increment, increment);
   }
-  EXPECT_LT(displacement_n(start, state.position, place).norm(), 1e-3);
+  EXPECT_LT(geodesy::displacement_n(start, state.position, place).norm(), 1e-3);
   EXPECT_LT(state.velocity_n.norm(), 1e-6);
 }
 
 TEST(Strapdown, DisplacementInvertsDisplaced) {
   const Geodetic here{-33 * kDegree, 179.9999 * kDegree, 55};
-  const Place place(here);
+  const geodesy::Place place(here);
   const Eigen::Vector3d d_n(120, 340, -12);
-  const Geodetic there = displaced(here, d_n, place);
+  const Geodetic there = geodesy::displaced(here, d_n, place);
   EXPECT_LT(there.longitude, 0);
   // Rounding of radians: 2e-16 * pi * Earth radius.
-  EXPECT_LT((displacement_n(here, there, place) - d_n).norm(), 1e-8);
-  const Eigen::Vector3d chord_n = wgs84::R_e_n(here.latitude, here.longitude).transpose() *
-                                  (wgs84::geodetic_to_ecef(there) - wgs84::geodetic_to_ecef(here));
+  EXPECT_LT((geodesy::displacement_n(here, there, place) - d_n).norm(), 1e-8);
+  const Eigen::Vector3d chord_n =
+      geodesy::wgs84::R_e_n(here.latitude, here.longitude).transpose() *
+      (geodesy::wgs84::geodetic_to_ecef(there) - geodesy::wgs84::geodetic_to_ecef(here));
   // Curvature: d^2 / 2R = 1 cm.
   EXPECT_LT((chord_n - d_n).norm(), 0.02);
 }

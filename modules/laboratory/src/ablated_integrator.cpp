@@ -6,11 +6,12 @@ namespace foucault::laboratory {
 
 using Eigen::Vector3d;
 
-AblatedIntegrator::AblatedIntegrator(const NodeState& x0, const LocalFrame& frame,
+AblatedIntegrator::AblatedIntegrator(const state::NodeState& x0, const geodesy::LocalFrame& frame,
                                      const MotionTerms& terms, const ImuIncrement& previous)
     : frame_(frame),
       terms_(terms),
-      earth_(earth_model(PreintegrationModel::full, frame, x0.p_w_b)),
+      earth_(
+          preintegration::earth_model(preintegration::PreintegrationModel::full, frame, x0.p_w_b)),
       turning_(terms.earth_rotation ? earth_.omega_ie_w : Vector3d::Zero()),
       coriolis_(terms.coriolis ? earth_.omega_ie_w : Vector3d::Zero()),
       start_(x0),
@@ -57,8 +58,8 @@ void AblatedIntegrator::add(const ImuIncrement& increment) {
   previous_ = increment;
 }
 
-NodeState AblatedIntegrator::state() const {
-  NodeState x;
+state::NodeState AblatedIntegrator::state() const {
+  state::NodeState x;
   x.p_w_b = start_.p_w_b + way_;
   x.v_w_b = v_;
   x.q_w_b = q_;

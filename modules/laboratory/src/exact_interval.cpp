@@ -9,20 +9,22 @@
 
 namespace foucault::laboratory {
 
-NodeState true_state(const Trajectory& trajectory, const LocalFrame& frame, double t) {
-  const Motion motion = trajectory.at(t);
+state::NodeState true_state(const simulation::Trajectory& trajectory,
+                            const geodesy::LocalFrame& frame, double t) {
+  const simulation::Motion motion = trajectory.at(t);
   const Geodetic& origin = frame.origin();
-  const Eigen::Matrix3d R_w_e = wgs84::R_e_n(origin.latitude, origin.longitude).transpose();
+  const Eigen::Matrix3d R_w_e =
+      geodesy::wgs84::R_e_n(origin.latitude, origin.longitude).transpose();
   const Eigen::Matrix3d R_w_n = frame.R_w_n(motion.position);
-  NodeState x;
-  x.p_w_b = R_w_e * (motion.p_e - wgs84::geodetic_to_ecef(origin));
+  state::NodeState x;
+  x.p_w_b = R_w_e * (motion.p_e - geodesy::wgs84::geodetic_to_ecef(origin));
   x.v_w_b = R_w_n * motion.velocity_n;
   x.q_w_b = Eigen::Quaterniond(R_w_n) * motion.q_n_v;
   return x;
 }
 
-ExactIncrements::ExactIncrements(const Trajectory& trajectory, double begin, double length,
-                                 double base_rate_hz, double coarsest_rate_hz)
+ExactIncrements::ExactIncrements(const simulation::Trajectory& trajectory, double begin,
+                                 double length, double base_rate_hz, double coarsest_rate_hz)
     : base_rate_hz_(base_rate_hz),
       before_(static_cast<std::size_t>(std::lround(base_rate_hz / coarsest_rate_hz))) {
   const int64_t step = nanoseconds(1 / base_rate_hz);
@@ -31,7 +33,7 @@ ExactIncrements::ExactIncrements(const Trajectory& trajectory, double begin, dou
   base_.reserve(before_ + static_cast<std::size_t>(count));
   for (int64_t i = -static_cast<int64_t>(before_); i < count; ++i) {
     const int64_t t = nanoseconds(begin) + i * step;
-    base_.push_back(exact_increment(trajectory, same, 0, t, t + step));
+    base_.push_back(simulation::exact_increment(trajectory, same, 0, t, t + step));
   }
 }
 

@@ -12,7 +12,7 @@
 namespace foucault::laboratory {
 namespace {
 
-using Kind = FaultKind;
+using Kind = simulation::FaultKind;
 
 constexpr double kToTheEnd = std::numeric_limits<double>::infinity();
 
@@ -21,16 +21,18 @@ struct Row {
   const char* name;
   const char* title;
   std::size_t count;
-  Fault faults[2];
+  simulation::Fault faults[2];
   FileDamage damage = FileDamage::none;
   double sigma_m = 0;  ///< of the fixes; 0: the trip's
 };
 
-constexpr Fault middle(Kind kind, double length_s, double size = 0) {
+constexpr simulation::Fault middle(Kind kind, double length_s, double size = 0) {
   return {kind, kFaultStart, length_s, size};
 }
 
-constexpr Fault throughout(Kind kind, double size = 0) { return {kind, 0, kToTheEnd, size}; }
+constexpr simulation::Fault throughout(Kind kind, double size = 0) {
+  return {kind, 0, kToTheEnd, size};
+}
 
 constexpr Row kRows[] = {
     {"none", "nothing", 0, {}},

@@ -20,14 +20,14 @@ constexpr double kSettled = 60;  // [s] after the alignment
 
 double end_of(const FaultCase& fault) {
   double end = 0;
-  for (const Fault& f : fault.faults) {
+  for (const simulation::Fault& f : fault.faults) {
     end = std::max(end, std::isfinite(f.length_s) ? f.start_s + f.length_s : f.start_s);
   }
   return end;
 }
 
 void add_errors(const FaultCase& fault, const std::vector<FaultObserver::Error>& errors,
-                const ScenarioOptions& scenario, FaultOutcome& outcome) {
+                const simulation::ScenarioOptions& scenario, FaultOutcome& outcome) {
   if (errors.empty()) return;
   const int64_t settled_ns = errors.front().t_ns + nanoseconds(kSettled);
   double squares = 0;
@@ -128,27 +128,28 @@ std::vector<const FaultOutcome*> methods_of(const std::vector<FaultOutcome>& out
 
 }  // namespace
 
-ScenarioOptions fault_scenario(int64_t seed) {
-  ScenarioOptions scenario;
+simulation::ScenarioOptions fault_scenario(int64_t seed) {
+  simulation::ScenarioOptions scenario;
   scenario.duration_s = kDuration;
   scenario.seed = seed;
   return scenario;
 }
 
-void FaultObserver::place(const Mounting& mounting) {
+void FaultObserver::place(const state::Mounting& mounting) {
   metrics_.emplace(mounting);
-  comparison_.emplace(mounting, [this](const Epoch& epoch, const ReferenceError& error) {
-    errors.push_back({epoch.t_ns, error.position_n.head<2>().norm()});
-  });
+  comparison_.emplace(mounting,
+                      [this](const state::Epoch& epoch, const state::ReferenceError& error) {
+                        errors.push_back({epoch.t_ns, error.position_n.head<2>().norm()});
+                      });
 }
 
-void FaultObserver::epoch(const Epoch& epoch) {
+void FaultObserver::epoch(const state::Epoch& epoch) {
   comparison_->add(epoch);
   metrics_->epoch(epoch);
 }
 
-void FaultObserver::notice(const Notice& notice) {
-  if (notice.kind != NoticeKind::aligned) notices.push_back(notice.text);
+void FaultObserver::notice(const state::Notice& notice) {
+  if (notice.kind != state::NoticeKind::aligned) notices.push_back(notice.text);
 }
 
 void FaultObserver::judge() {
@@ -169,8 +170,8 @@ std::vector<FaultOutcome> run_fault(const FaultCase& fault, const std::vector<st
   return outcomes;
 }
 
-TextTable fault_table(const std::vector<FaultOutcome>& outcomes) {
-  TextTable table;
+evaluation::TextTable fault_table(const std::vector<FaultOutcome>& outcomes) {
+  evaluation::TextTable table;
   table.title = "Faults";
   table.header = {"fault",     "injected",   "method",     "seed",     "exit_code", "rms_m",
                   "largest_m", "recovery_s", "fixes_used", "rejected", "message",   "trustworthy"};
@@ -185,8 +186,8 @@ TextTable fault_table(const std::vector<FaultOutcome>& outcomes) {
   return table;
 }
 
-TextTable fault_summary(const std::vector<FaultOutcome>& outcomes) {
-  TextTable table;
+evaluation::TextTable fault_summary(const std::vector<FaultOutcome>& outcomes) {
+  evaluation::TextTable table;
   table.title = "Faults";
   table.header = {"injected",    "exit code", "largest error [m]", "recovery [s]", "fixes left out",
                   "trustworthy", "said"};

@@ -101,8 +101,8 @@ std::vector<std::string> term_row(const std::string& title, LabGroup group, cons
 
 std::vector<double> shown_durations_s() { return {1, 60}; }
 
-TextTable model_table(const StudyResult& result) {
-  TextTable table;
+evaluation::TextTable model_table(const StudyResult& result) {
+  evaluation::TextTable table;
   table.title = fmt::format("Position error [m], {:g} Hz", result.plan.rate_hz);
   table.header = {"motion", "duration [s]"};
   for (const LabName& model : lab_models()) table.header.push_back(model.title);
@@ -119,9 +119,9 @@ TextTable model_table(const StudyResult& result) {
   return table;
 }
 
-TextTable discretization_table(const StudyResult& result) {
+evaluation::TextTable discretization_table(const StudyResult& result) {
   const StudyPlan& plan = result.plan;
-  TextTable table;
+  evaluation::TextTable table;
   table.title = fmt::format("full and the discretization of its increments over {:g} s",
                             plan.fine_duration_s);
   table.header = {"motion",     "IMU rate [Hz]", "full [m]",   "discr. [m]",
@@ -142,9 +142,9 @@ TextTable discretization_table(const StudyResult& result) {
   return table;
 }
 
-TextTable term_table(const StudyResult& result, const MotionStudy& motion) {
+evaluation::TextTable term_table(const StudyResult& result, const MotionStudy& motion) {
   const StudyPlan& plan = result.plan;
-  TextTable table;
+  evaluation::TextTable table;
   table.title = fmt::format("{}: error after {:g} s in sigmas of the IMU's noise", motion.title,
                             fmt::join(shown_durations_s(), " / "));
   table.header = {"left out"};
@@ -165,7 +165,7 @@ void write_laboratory(const StudyResult& result, const std::filesystem::path& fo
 }
 
 std::vector<std::string> laboratory_lines(const StudyResult& result) {
-  return text_lines(to_plain_text(model_table(result)));
+  return evaluation::text_lines(evaluation::to_plain_text(model_table(result)));
 }
 
 }  // namespace foucault::laboratory

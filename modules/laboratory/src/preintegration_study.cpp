@@ -46,30 +46,32 @@ const std::vector<Ablation>& ablations() {
 
 struct Model {
   LabName name;
-  PreintegrationModel model;
+  preintegration::PreintegrationModel model;
   bool local;  ///< the origin of w is where the interval begins
 };
 
 const std::vector<Model>& models() {
   static const std::vector<Model> kModels{
-      {{"rough", "rough"}, PreintegrationModel::rough, false},
-      {{"rough_local", "rough, origin here"}, PreintegrationModel::rough, true},
-      {{"refined", "refined"}, PreintegrationModel::refined, false},
-      {{"refined_local", "refined, origin here"}, PreintegrationModel::refined, true},
-      {{"full", "full"}, PreintegrationModel::full, false}};
+      {{"rough", "rough"}, preintegration::PreintegrationModel::rough, false},
+      {{"rough_local", "rough, origin here"}, preintegration::PreintegrationModel::rough, true},
+      {{"refined", "refined"}, preintegration::PreintegrationModel::refined, false},
+      {{"refined_local", "refined, origin here"},
+       preintegration::PreintegrationModel::refined,
+       true},
+      {{"full", "full"}, preintegration::PreintegrationModel::full, false}};
   return kModels;
 }
 
 /// An interval in a frame: the truth at its begin and at every duration.
 struct Interval {
-  Interval(const Trajectory& trajectory, const LocalFrame& frame_in, double begin,
-           const std::vector<double>& durations_s)
+  Interval(const simulation::Trajectory& trajectory, const geodesy::LocalFrame& frame_in,
+           double begin, const std::vector<double>& durations_s)
       : frame(frame_in), x0(true_state(trajectory, frame, begin)) {
     for (const double T : durations_s) truth.push_back(true_state(trajectory, frame, begin + T));
   }
-  LocalFrame frame;
-  NodeState x0;
-  std::vector<NodeState> truth;
+  geodesy::LocalFrame frame;
+  state::NodeState x0;
+  std::vector<state::NodeState> truth;
 };
 
 /// The trip's frame and the interval's own.
@@ -96,14 +98,15 @@ class IntervalRecorder {
       : durations_s_(durations_s), frames_(frames), distance_m_(distance_m), rows_(rows) {}
 
   void models(const std::vector<ImuIncrement>& increments, double rate_hz) const {
-    Preintegrator integrator({}, {}, increments[1].t_begin_ns, increments.front());
+    preintegration::Preintegrator integrator({}, {}, increments[1].t_begin_ns, increments.front());
     integrate(integrator, increments, durations_s_, [&](std::size_t mark) {
-      const Preintegration pre = integrator.result();
+      const preintegration::Preintegration pre = integrator.result();
       for (const Model& m : laboratory::models()) {
         const Interval& seen = m.local ? frames_.local : frames_.trip;
-        const EarthModel earth = earth_model(m.model, seen.frame, seen.x0.p_w_b);
+        const preintegration::EarthModel earth =
+            preintegration::earth_model(m.model, seen.frame, seen.x0.p_w_b);
         add(LabGroup::model, m.name.key, rate_hz, mark, m.local ? 0 : distance_m_,
-            error_of(predict(seen.x0, pre, earth), seen.truth[mark]));
+            error_of(preintegration::predict(seen.x0, pre, earth), seen.truth[mark]));
       }
     });
     MotionTerms everything;
@@ -119,30 +122,35 @@ class IntervalRecorder {
 
   void noise(const std::string& grade, const std::vector<ImuIncrement>& increments,
              double rate_hz) const {
-    Preintegrator integrator(imu_preset(grade), {}, increments[1].t_begin_ns, increments.front());
+    preintegration::Preintegrator integrator(imu::imu_preset(grade), {}, increments[1].t_begin_ns,
+                                             increments.front());
     integrate(integrator, increments, durations_s_, [&](std::size_t mark) {
-      const NodeMatrix P = integrator.result().covariance;
-      const auto sigma = [&P](const NodeBlock& b) { return std::sqrt(part(P, b, b).trace()); };
+      const state::NodeMatrix P = integrator.result().covariance;
+      const auto sigma = [&P](const state::NodeBlock& b) {
+        return std::sqrt(state::part(P, b, b).trace());
+      };
       add(LabGroup::noise, grade, rate_hz, mark, distance_m_,
-          {sigma(block::position), sigma(block::velocity), sigma(block::attitude)});
+          {sigma(state::block::position), sigma(state::block::velocity),
+           sigma(state::block::attitude)});
     });
   }
 
   /// `refined` with the origin `km` behind the vehicle.
-  void distances(const Trajectory& trajectory, double begin, const std::vector<double>& all_km,
-                 const std::vector<ImuIncrement>& increments, double rate_hz) const {
+  void distances(const simulation::Trajectory& trajectory, double begin,
+                 const std::vector<double>& all_km, const std::vector<ImuIncrement>& increments,
+                 double rate_hz) const {
     std::vector<Interval> seen;
     for (const double km : all_km) {
       seen.emplace_back(trajectory, frame_behind(1000 * km), begin, durations_s_);
     }
-    Preintegrator integrator({}, {}, increments[1].t_begin_ns, increments.front());
+    preintegration::Preintegrator integrator({}, {}, increments[1].t_begin_ns, increments.front());
     integrate(integrator, increments, durations_s_, [&](std::size_t mark) {
-      const Preintegration pre = integrator.result();
+      const preintegration::Preintegration pre = integrator.result();
       for (std::size_t i = 0; i < seen.size(); ++i) {
-        const EarthModel earth =
-            earth_model(PreintegrationModel::refined, seen[i].frame, seen[i].x0.p_w_b);
+        const preintegration::EarthModel earth = preintegration::earth_model(
+            preintegration::PreintegrationModel::refined, seen[i].frame, seen[i].x0.p_w_b);
         add(LabGroup::distance, "refined", rate_hz, mark, 1000 * all_km[i],
-            error_of(predict(seen[i].x0, pre, earth), seen[i].truth[mark]));
+            error_of(preintegration::predict(seen[i].x0, pre, earth), seen[i].truth[mark]));
       }
     });
   }
@@ -157,13 +165,13 @@ class IntervalRecorder {
     });
   }
 
-  LocalFrame frame_behind(double metres) const {
-    const NodeState& x0 = frames_.local.x0;
+  geodesy::LocalFrame frame_behind(double metres) const {
+    const state::NodeState& x0 = frames_.local.x0;
     const Vector3d ahead = x0.q_w_b * Vector3d::UnitX();
     const Vector3d level(ahead.x(), ahead.y(), 0);
     Geodetic origin = frames_.local.frame.to_geodetic(-metres * level.normalized());
     origin.height = frames_.local.frame.origin().height;
-    return LocalFrame(origin);
+    return geodesy::LocalFrame(origin);
   }
 
   void add(LabGroup group, const std::string& name, double rate_hz, std::size_t mark,
@@ -201,7 +209,7 @@ MotionError root_mean(const MotionError& sum, double count) {
 
 }  // namespace
 
-MotionError error_of(const NodeState& estimate, const NodeState& truth) {
+MotionError error_of(const state::NodeState& estimate, const state::NodeState& truth) {
   return {(estimate.p_w_b - truth.p_w_b).norm(), (estimate.v_w_b - truth.v_w_b).norm(),
           so3::log(truth.q_w_b.conjugate() * estimate.q_w_b).norm()};
 }
@@ -253,17 +261,17 @@ const LabRow& find_row(const MotionStudy& study, LabGroup group, const std::stri
 PreintegrationStudy::PreintegrationStudy(LabMotion motion, StudyPlan plan)
     : motion_(std::move(motion)),
       plan_(std::move(plan)),
-      trajectory_(make_trajectory(motion_.scenario)) {
+      trajectory_(simulation::make_trajectory(motion_.scenario)) {
   require_whole_samples(plan_);
 }
 
 PreintegrationStudy::Record PreintegrationStudy::measure(int interval) const {
   const double begin = motion_.start_s(interval);
-  const Motion start = trajectory_.at(begin);
-  const LocalFrame trip_frame(trajectory_.at(0).position);
+  const simulation::Motion start = trajectory_.at(begin);
+  const geodesy::LocalFrame trip_frame(trajectory_.at(0).position);
   const auto seen = [&](const std::vector<double>& durations_s) {
     return Frames{Interval(trajectory_, trip_frame, begin, durations_s),
-                  Interval(trajectory_, LocalFrame(start.position), begin, durations_s)};
+                  Interval(trajectory_, geodesy::LocalFrame(start.position), begin, durations_s)};
   };
   Record record;
   const Frames frames = seen(plan_.durations_s);

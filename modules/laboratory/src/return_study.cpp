@@ -20,13 +20,13 @@ namespace {
 
 constexpr double kBetween = 60;  // [s] of fixes between outages
 
-ScenarioOptions trip() {
-  ScenarioOptions scenario;
+simulation::ScenarioOptions trip() {
+  simulation::ScenarioOptions scenario;
   scenario.duration_s = 900;
   return scenario;
 }
 
-OutageOptions outages_of(const ReturnCase& what, OutageOptions outages) {
+evaluation::OutageOptions outages_of(const ReturnCase& what, evaluation::OutageOptions outages) {
   if (what.log.empty()) outages.first_s = 200;
   outages.length_s = what.length_s;
   const bool too_short = outages.period_s <= what.length_s;
@@ -34,21 +34,21 @@ OutageOptions outages_of(const ReturnCase& what, OutageOptions outages) {
   return outages;
 }
 
-std::unique_ptr<Source> open(const ReturnCase& what, const ReturnProgram& program) {
-  if (what.log.empty()) return std::make_unique<SimulatedSource>(trip(), program.noise);
+std::unique_ptr<state::Source> open(const ReturnCase& what, const ReturnProgram& program) {
+  if (what.log.empty()) return std::make_unique<simulation::SimulatedSource>(trip(), program.noise);
   return program.open(what.log);
 }
 
 /// Fixes that the method did not use, and for how long at a time.
-class LeftOut : public OutageRunObserver {
+class LeftOut : public evaluation::OutageRunObserver {
  public:
   explicit LeftOut(ReturnOutcome& outcome) : outcome_(outcome) {}
 
-  void fix(const FixResult& fix) override {
-    if (fix.verdict == FixVerdict::gated || fix.verdict == FixVerdict::corrected) {
+  void fix(const state::FixResult& fix) override {
+    if (fix.verdict == state::FixVerdict::gated || fix.verdict == state::FixVerdict::corrected) {
       ++outcome_.left_out;
       if (!since_ns_) since_ns_ = fix.t_ns;
-    } else if (fix.verdict == FixVerdict::used) {
+    } else if (fix.verdict == state::FixVerdict::used) {
       end(fix.t_ns);
     }
     last_ns_ = fix.t_ns;
@@ -72,15 +72,17 @@ class LeftOut : public OutageRunObserver {
 std::vector<double> largest_drifts(const ReturnCase& what, const ReturnProgram& program, bool gate,
                                    ReturnOutcome& outcome) {
   const ReturnMethod method = program.method(what, gate);
-  const OutageOptions outages = outages_of(what, program.outages);
+  const evaluation::OutageOptions outages = outages_of(what, program.outages);
   std::vector<double> largest;
   for (const double shift_s : outages.shifts_s) {
-    OutageRunOptions options;
+    evaluation::OutageRunOptions options;
     options.reference.keep_s = method.keep_references_s;
     LeftOut left_out(outcome);
-    const OutageRunResult run = run_with_outages(
-        open(what, program), OutageSchedule(outages, shift_s), method.make, options, &left_out);
-    for (const OutageDrift& drift : run.drifts) largest.push_back(drift.maximum.horizontal);
+    const evaluation::OutageRunResult run = evaluation::run_with_outages(
+        open(what, program), evaluation::OutageSchedule(outages, shift_s), method.make, options,
+        &left_out);
+    for (const evaluation::OutageDrift& drift : run.drifts)
+      largest.push_back(drift.maximum.horizontal);
     left_out.end();
   }
   return largest;
@@ -98,17 +100,18 @@ ReturnOutcome study_return(const ReturnCase& what, const ReturnProgram& program)
   try {
     const std::vector<double> drifts = largest_drifts(what, program, true, outcome);
     outcome.outages = static_cast<int64_t>(drifts.size());
-    outcome.drift_m = root_mean_square(drifts);
+    outcome.drift_m = evaluation::root_mean_square(drifts);
     ReturnOutcome of_control;
-    outcome.control_m = root_mean_square(largest_drifts(what, program, false, of_control));
+    outcome.control_m =
+        evaluation::root_mean_square(largest_drifts(what, program, false, of_control));
   } catch (const DataError& error) {
     outcome.error = error.what();
   }
   return outcome;
 }
 
-TextTable return_table(const std::vector<ReturnOutcome>& outcomes) {
-  TextTable table;
+evaluation::TextTable return_table(const std::vector<ReturnOutcome>& outcomes) {
+  evaluation::TextTable table;
   table.title = "Returns";
   table.header = {"recording", "noise",     "outage_s", "method",   "outages",
                   "drift_m",   "control_m", "ratio",    "left_out", "longest_left_out_s",
@@ -124,8 +127,8 @@ TextTable return_table(const std::vector<ReturnOutcome>& outcomes) {
   return table;
 }
 
-TextTable return_summary(const std::vector<ReturnOutcome>& outcomes) {
-  TextTable table;
+evaluation::TextTable return_summary(const std::vector<ReturnOutcome>& outcomes) {
+  evaluation::TextTable table;
   table.title = "Returns after an outage: the worst of the methods";
   table.header = {"recording", "noise", "outage [s]", "drift / gate off", "longest left out [s]"};
   std::map<std::tuple<std::string, double, double>, std::pair<double, double>> worst;

@@ -20,28 +20,30 @@ class Trial {
  public:
   Trial(const std::string& motion, double length, double rate_hz)
       : motion_(lab_motion(motion)),
-        trajectory_(make_trajectory(motion_.scenario)),
+        trajectory_(simulation::make_trajectory(motion_.scenario)),
         frame_(trajectory_.at(0).position),
         x0_(true_state(trajectory_, frame_, begin())),
         truth_(true_state(trajectory_, frame_, begin() + length)),
         increments_(ExactIncrements(trajectory_, begin(), length, 1000, 50).at(rate_hz)) {}
 
-  const LocalFrame& frame() const { return frame_; }
-  const NodeState& x0() const { return x0_; }
-  const NodeState& truth() const { return truth_; }
+  const geodesy::LocalFrame& frame() const { return frame_; }
+  const state::NodeState& x0() const { return x0_; }
+  const state::NodeState& truth() const { return truth_; }
 
-  NodeState reckon(const MotionTerms& terms) const {
+  state::NodeState reckon(const MotionTerms& terms) const {
     AblatedIntegrator integrator(x0_, frame_, terms, increments_.front());
     for (std::size_t i = 1; i < increments_.size(); ++i) integrator.add(increments_[i]);
     return integrator.state();
   }
-  NodeState predict_with(const EarthModel& earth) const {
-    Preintegrator integrator({}, {}, increments_[1].t_begin_ns, increments_.front());
+  state::NodeState predict_with(const preintegration::EarthModel& earth) const {
+    preintegration::Preintegrator integrator({}, {}, increments_[1].t_begin_ns,
+                                             increments_.front());
     for (std::size_t i = 1; i < increments_.size(); ++i) integrator.add(increments_[i]);
     return predict(x0_, integrator.result(), earth);
   }
-  EarthModel full_earth() const {
-    return earth_model(PreintegrationModel::full, frame_, x0_.p_w_b);
+  preintegration::EarthModel full_earth() const {
+    return preintegration::earth_model(preintegration::PreintegrationModel::full, frame_,
+                                       x0_.p_w_b);
   }
   MotionError error(const MotionTerms& terms) const { return error_of(reckon(terms), truth_); }
 
@@ -49,9 +51,9 @@ class Trial {
   double begin() const { return motion_.start_s(3); }
 
   LabMotion motion_;
-  Trajectory trajectory_;
-  LocalFrame frame_;
-  NodeState x0_, truth_;
+  simulation::Trajectory trajectory_;
+  geodesy::LocalFrame frame_;
+  state::NodeState x0_, truth_;
   std::vector<ImuIncrement> increments_;
 };
 
@@ -70,7 +72,7 @@ TEST_P(AblatedIntegratorOf, IsPreintegratorAndPredictToRounding) {
   terms.gravity = GravityAlong::start;
   for (const double T : {kShort, kLong}) {
     const Trial trial(GetParam(), T, 200);
-    EarthModel earth = trial.full_earth();
+    preintegration::EarthModel earth = trial.full_earth();
     earth.gravity_gradient.setZero();
     const MotionError e = error_of(trial.reckon(terms), trial.predict_with(earth));
     EXPECT_LT(e.position, T == kShort ? 2e-10 : 5e-7);
@@ -94,7 +96,7 @@ TEST_P(AblatedIntegratorOf, IsRoughWithoutTheEarthsRotation) {
   MotionTerms terms;
   terms.gravity = GravityAlong::start;
   terms.earth_rotation = terms.coriolis = false;
-  EarthModel earth = trial.full_earth();
+  preintegration::EarthModel earth = trial.full_earth();
   earth.gravity_gradient.setZero();
   earth.omega_ie_w.setZero();
   const MotionError e = error_of(trial.reckon(terms), trial.predict_with(earth));
@@ -163,7 +165,7 @@ TEST(AblatedTerms, ConingAndScullingCountOnAVibratingCar) {
 }
 
 TEST(ExactIncrements, OfEveryRateHaveOneSum) {
-  const Trajectory city = make_trajectory(lab_motion("city").scenario);
+  const simulation::Trajectory city = simulation::make_trajectory(lab_motion("city").scenario);
   const ExactIncrements exact(city, 100.013, 0.2, 1000, 50);
   const auto sum_of = [](const std::vector<ImuIncrement>& all) {
     return std::accumulate(

@@ -57,7 +57,7 @@ class FaultStudyTest : public testing::Test {
       observer.place({});
       for (int i = 0; i < 400; ++i) drive(i, observer);
       for (int i = 0; i < notices_; ++i) {
-        observer.notice({0, NoticeKind::fix_rejected, "at 1700000000.500 s"});
+        observer.notice({0, state::NoticeKind::fix_rejected, "at 1700000000.500 s"});
       }
       observer.judge();
       if (method == "breaks") return "'" + log + "' breaks off";
@@ -69,13 +69,13 @@ class FaultStudyTest : public testing::Test {
     const int64_t t_ns = fault_scenario(1).start_ns() + nanoseconds(i);
     ReferencePose reference;
     reference.t_ns = t_ns;
-    Epoch epoch;
+    state::Epoch epoch;
     epoch.t_ns = t_ns;
     epoch.position.latitude = (i >= 200 && i < wrong_until_ ? 5 : 0.01) / 6.4e6;
     epoch.covariance.setIdentity();
     observer.reference(reference);
     observer.epoch(epoch);
-    FixResult fix;
+    state::FixResult fix;
     fix.t_ns = t_ns;
     fix.innovation_covariance.setIdentity();
     fix.innovation_n = Eigen::Vector3d(1, -1, 1) * (i % 2 == 0 ? 1 : -1);
@@ -123,11 +123,11 @@ TEST_F(FaultStudyTest, WhatBreaksOffOrIsRefused) {
   EXPECT_EQ(outcomes[2].message, "log: no");
   EXPECT_FALSE(outcomes[2].trust.has_value());
 
-  const TextTable table = fault_table(outcomes);
+  const evaluation::TextTable table = fault_table(outcomes);
   ASSERT_EQ(table.rows.size(), 3u);
   EXPECT_EQ(table.rows[0].size(), table.header.size());
   EXPECT_EQ(table.rows[2][5], "") << "no error without epochs";
-  const TextTable summary = fault_summary(outcomes);
+  const evaluation::TextTable summary = fault_summary(outcomes);
   ASSERT_EQ(summary.rows.size(), 1u);
   EXPECT_EQ(summary.rows[0][1], "0 / 1 / 1");
   EXPECT_THAT(summary.rows[0][2], testing::EndsWith(" / -"));

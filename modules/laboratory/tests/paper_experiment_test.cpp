@@ -43,7 +43,7 @@ TEST(PreintegrationOutput, TablesAndFilesHoldTheStudy) {
 
   EXPECT_EQ(model_table(result).rows.size(), 2u);
   EXPECT_EQ(discretization_table(result).rows.size(), 2u);
-  const TextTable terms = term_table(result, result.motions[0]);
+  const evaluation::TextTable terms = term_table(result, result.motions[0]);
   EXPECT_EQ(terms.header.size(), 2u);
   EXPECT_EQ(terms.rows.size(), lab_ablations().size() + lab_models().size() - 1);
   EXPECT_EQ(laboratory_lines(result).size(), 4u) << "title, header, two rows";

@@ -68,7 +68,7 @@ TEST(PreintegrationStudy, ModelsDifferAsTheyAreDefined) {
 
 TEST(PreintegrationStudy, NoiseIsThatOfThePreset) {
   const MotionStudy study = study_of("city", short_plan(), 1);
-  const ImuNoise noise = imu_preset("ADIS16465");
+  const imu::ImuNoise noise = imu::imu_preset("ADIS16465");
   // Three axes of angular random walk; the bias wanders by far less in 1 s.
   EXPECT_NEAR(rms(study, LabGroup::noise, "ADIS16465").attitude,
               noise.gyro_noise_density * std::sqrt(3.0), 1e-3 * noise.gyro_noise_density);

@@ -12,18 +12,18 @@ namespace foucault::laboratory {
 namespace {
 
 /// Drifts as DriftingEstimator and, with the gate, leaves out the first two fixes after a drift.
-class GatedEstimator : public Estimator {
+class GatedEstimator : public state::Estimator {
  public:
-  GatedEstimator(Sink& sink, bool gate, double scale)
+  GatedEstimator(state::Sink& sink, bool gate, double scale)
       : sink_(sink), gate_(gate), inner_(sink, scale) {}
 
   void process(const Measurement& measurement) override {
     if (const auto* fix = std::get_if<GnssFix>(&measurement)) {
       if (seconds_between(last_ns_, fix->t_ns) > 5) left_out_ = 2;
-      FixResult result;
+      state::FixResult result;
       result.t_ns = last_ns_ = fix->t_ns;
       const bool believed = !gate_ || left_out_-- <= 0;
-      result.verdict = believed ? FixVerdict::used : FixVerdict::gated;
+      result.verdict = believed ? state::FixVerdict::used : state::FixVerdict::gated;
       sink_.fix(result);
     }
     inner_.process(measurement);
@@ -31,7 +31,7 @@ class GatedEstimator : public Estimator {
   void finish() override { inner_.finish(); }
 
  private:
-  Sink& sink_;
+  state::Sink& sink_;
   bool gate_;
   test::DriftingEstimator inner_;
   int64_t last_ns_ = 0;
@@ -43,12 +43,12 @@ ReturnProgram program() {
   program.outages.first_s = 100;
   program.outages.period_s = 50;
   program.outages.shifts_s = {0};
-  program.noise = imu_preset("ADIS16465");
+  program.noise = imu::imu_preset("ADIS16465");
   program.open = [](const std::string&) { return std::make_unique<test::RestSource>(275, true); };
   program.method = [](const ReturnCase& what, bool gate) {
     if (what.method == "refuses") throw DataError("no");
     const double scale = gate ? 2 * what.noise : what.noise;
-    return ReturnMethod{[gate, scale](const Mounting&, Sink& sink) {
+    return ReturnMethod{[gate, scale](const state::Mounting&, state::Sink& sink) {
       return std::make_unique<GatedEstimator>(sink, gate, scale);
     }};
   };
@@ -71,7 +71,7 @@ TEST(ReturnStudy, OutagesAsLongAsTheirPeriodAreMovedApart) {
 TEST(ReturnStudy, ASimulatedTripWithoutALog) {
   ReturnProgram simulated = program();
   simulated.method = [](const ReturnCase&, bool) {
-    return ReturnMethod{[](const Mounting&, Sink& sink) {
+    return ReturnMethod{[](const state::Mounting&, state::Sink& sink) {
       return std::make_unique<GatedEstimator>(sink, true, 1);
     }};
   };
@@ -85,11 +85,11 @@ TEST(ReturnStudy, TablesNameTheWorst) {
       study_return({"x/a.rawlog", 1, 30, "ekf"}, program()),
       study_return({"x/a.rawlog", 1, 30, "refuses"}, program())};
   EXPECT_EQ(outcomes[1].error, "no");
-  const TextTable table = return_table(outcomes);
+  const evaluation::TextTable table = return_table(outcomes);
   EXPECT_EQ(table.rows[0][0], "a");
   EXPECT_EQ(table.rows[1].back(), "no");
   EXPECT_EQ(table.rows[0].size(), table.header.size());
-  const TextTable summary = return_summary(outcomes);
+  const evaluation::TextTable summary = return_summary(outcomes);
   ASSERT_EQ(summary.rows.size(), 1u);
   EXPECT_EQ(summary.rows[0][4], "1");
   EXPECT_EQ(return_summary({ReturnOutcome()}).rows[0][0], "simulated");

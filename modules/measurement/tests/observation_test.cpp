@@ -40,7 +40,7 @@ Eigen::Matrix3d random_covariance(std::mt19937& rng) {
 }
 
 /// Seen by no observation but the beacon's.
-constexpr Block kTemperature{"temperature", 1, "K"};
+constexpr state::Block kTemperature{"temperature", 1, "K"};
 
 /// A distance from the antenna to a beacon, off by metres per kelvin of a block that no program
 /// has: range = |p_beacon - p - C l| + k T.
@@ -49,25 +49,25 @@ class BeaconRange final : public Observation {
   static constexpr double kMetresPerKelvin = 0.3;
 
   BeaconRange(const Geodetic& beacon, const Eigen::Vector3d& p_b_a, double range)
-      : beacon_e_(wgs84::geodetic_to_ecef(beacon)), p_b_a_(p_b_a), range_(range) {}
+      : beacon_e_(geodesy::wgs84::geodetic_to_ecef(beacon)), p_b_a_(p_b_a), range_(range) {}
 
   std::string_view name() const override { return "beacon_range"; }
 
-  Linearized linearize(const NavState& x, const Eigen::Vector3d& /*rate_b*/,
-                       const Layout& layout) const override {
-    const Eigen::Matrix3d R_e_n = wgs84::R_e_n(x.position.latitude, x.position.longitude);
+  state::Linearized linearize(const state::NavState& x, const Eigen::Vector3d& /*rate_b*/,
+                              const state::Layout& layout) const override {
+    const Eigen::Matrix3d R_e_n = geodesy::wgs84::R_e_n(x.position.latitude, x.position.longitude);
     const Eigen::Matrix3d C = x.q_n_b.toRotationMatrix();
     const Eigen::Vector3d to_beacon_n =
-        R_e_n.transpose() * (beacon_e_ - wgs84::geodetic_to_ecef(x.position)) - C * p_b_a_;
+        R_e_n.transpose() * (beacon_e_ - geodesy::wgs84::geodetic_to_ecef(x.position)) - C * p_b_a_;
     const Eigen::RowVector3d away = -to_beacon_n.normalized();
-    Linearized z(1, layout.size());
+    state::Linearized z(1, layout.size());
     z.r[0] = range_ - to_beacon_n.norm();
-    columns_of(z.H, block::position) = away;
-    columns_of(z.H, block::attitude) = -away * C * so3::skew(p_b_a_);
+    state::columns_of(z.H, state::block::position) = away;
+    state::columns_of(z.H, state::block::attitude) = -away * C * so3::skew(p_b_a_);
     z.R(0, 0) = 0.01;
-    if (const SlowBlock* temperature = layout.find(kTemperature)) {
+    if (const state::SlowBlock* temperature = layout.find(kTemperature)) {
       z.r[0] -= kMetresPerKelvin * x.slow[temperature->index];
-      columns_of(z.H, *temperature).setConstant(kMetresPerKelvin);
+      state::columns_of(z.H, *temperature).setConstant(kMetresPerKelvin);
     }
     return z;
   }
@@ -79,19 +79,20 @@ class BeaconRange final : public Observation {
 };
 
 /// A fix some decimetres and decimetres per second off, of any lever arm.
-GnssFix random_fix(const NavState& x, std::mt19937& rng) {
+GnssFix random_fix(const state::NavState& x, std::mt19937& rng) {
   GnssFix fix;
   fix.p_b_a = between(rng, 0, kMostLever) * draw3(rng).normalized();
-  fix.antenna = displaced(x.position, x.q_n_b * fix.p_b_a + 0.3 * draw3(rng), Place(x.position));
+  fix.antenna = geodesy::displaced(x.position, x.q_n_b * fix.p_b_a + 0.3 * draw3(rng),
+                                   geodesy::Place(x.position));
   fix.velocity_n = x.velocity_n + draw3(rng);
   fix.position_covariance = random_covariance(rng);
   fix.velocity_covariance = random_covariance(rng);
   return fix;
 }
 
-ObservationPtr random_beacon(const NavState& x, std::mt19937& rng) {
+ObservationPtr random_beacon(const state::NavState& x, std::mt19937& rng) {
   const Eigen::Vector3d way_n = between(rng, 50, 500) * draw3(rng).normalized();
-  const Geodetic beacon = displaced(x.position, way_n, Place(x.position));
+  const Geodetic beacon = geodesy::displaced(x.position, way_n, geodesy::Place(x.position));
   return std::make_shared<BeaconRange>(beacon, kMostLever * draw3(rng).normalized(),
                                        between(rng, 50, 500));
 }
@@ -99,7 +100,7 @@ ObservationPtr random_beacon(const NavState& x, std::mt19937& rng) {
 /// All there is. A new observation is one line here; EveryObservationHasALine asks for it.
 struct Kind {
   std::string name;
-  std::function<ObservationPtr(const NavState&, std::mt19937&)> make;
+  std::function<ObservationPtr(const state::NavState&, std::mt19937&)> make;
 };
 const std::vector<Kind> kKinds = {
     {"gnss_position", [](const auto& x, auto& rng) { return gnss_position(random_fix(x, rng)); }},
@@ -108,31 +109,34 @@ const std::vector<Kind> kKinds = {
 };
 
 /// Every slow block there is; a new one is one line here.
-Layout every_block() {
-  Layout layout;
-  layout.add(block::accel_scale, 1e-3).add(kTemperature, 5).add(block::gyro_scale, 1e-3);
+state::Layout every_block() {
+  state::Layout layout;
+  layout.add(state::block::accel_scale, 1e-3)
+      .add(kTemperature, 5)
+      .add(state::block::gyro_scale, 1e-3);
   return layout;
 }
 
 /// Latitudes to +-80 deg, velocities to 250 m/s, any attitude, scale factors of several per cent.
-NavState random_state(std::mt19937& rng, const Layout& layout) {
-  NavState x;
+state::NavState random_state(std::mt19937& rng, const state::Layout& layout) {
+  state::NavState x;
   x.position = {between(rng, -80, 80) * kDegree, between(rng, -kPi, kPi), between(rng, -100, 12e3)};
   x.velocity_n = between(rng, 0, 250) * draw3(rng).normalized();
   x.q_n_b = so3::exp(between(rng, 0, kPi) * draw3(rng).normalized());
   x.bias = {0.1 * draw3(rng), 0.5 * draw3(rng)};
-  x.slow = 0.1 * SlowVector::NullaryExpr(layout.slow_size(), [&] { return between(rng, -1, 1); });
+  x.slow =
+      0.1 * state::SlowVector::NullaryExpr(layout.slow_size(), [&] { return between(rng, -1, 1); });
   return x;
 }
 
 /// An observation at a state, and the rate there.
 struct Sample {
-  NavState x;
+  state::NavState x;
   Eigen::Vector3d rate_b;
   ObservationPtr observation;
 };
 
-Sample random_sample(const Kind& kind, const Layout& layout, std::mt19937& rng) {
+Sample random_sample(const Kind& kind, const state::Layout& layout, std::mt19937& rng) {
   Sample s;
   s.x = random_state(rng, layout);
   s.rate_b = kMostRate * draw3(rng);
@@ -141,13 +145,13 @@ Sample random_sample(const Kind& kind, const Layout& layout, std::mt19937& rng) 
 }
 
 /// d predicted / d error by central differences: r is minus the prediction.
-StateVector gradient_by_differences(const Sample& s, const Layout& layout, int row) {
-  StateVector gradient(layout.size());
+state::StateVector gradient_by_differences(const Sample& s, const state::Layout& layout, int row) {
+  state::StateVector gradient(layout.size());
   for (int i = 0; i < layout.size(); ++i) {
-    const double h = i < block::position.size ? 0.1 : 1e-4;
-    const StateVector step = h * StateVector::Unit(layout.size(), i);
-    const auto r = [&](const StateVector& error) {
-      return s.observation->linearize(boxplus(s.x, error), s.rate_b, layout).r[row];
+    const double h = i < state::block::position.size ? 0.1 : 1e-4;
+    const state::StateVector step = h * state::StateVector::Unit(layout.size(), i);
+    const auto r = [&](const state::StateVector& error) {
+      return s.observation->linearize(state::boxplus(s.x, error), s.rate_b, layout).r[row];
     };
     gradient[i] = (r(-step) - r(step)) / (2 * h);
   }
@@ -162,21 +166,21 @@ StateVector gradient_by_differences(const Sample& s, const Layout& layout, int r
 /// All others, steps h of 1e-4: third derivatives of what turns, at most 3 * the swing of 2 m at
 /// 3 * sqrt(3) + 0.2 rad/s, with scale factors of 10 %, times h^2 / 6, are 6e-8; rounding of 500 m
 /// or 250 m/s, 1e-13 over the step, is less.
-StateVector tolerance(const Sample& s, const Layout& layout) {
+state::StateVector tolerance(const Sample& s, const state::Layout& layout) {
   const double turning = (1 + std::tan(std::abs(s.x.position.latitude))) / kEarthRadius;
-  StateVector tolerance = StateVector::Constant(layout.size(), 1e-7);
-  part(tolerance, block::position).setConstant(3e-6 + (kMostLever + 1) * turning);
+  state::StateVector tolerance = state::StateVector::Constant(layout.size(), 1e-7);
+  state::part(tolerance, state::block::position).setConstant(3e-6 + (kMostLever + 1) * turning);
   return tolerance;
 }
 
 /// Largest error of H by its tolerance.
-double worst_of(const Sample& s, const Layout& layout) {
-  const Linearized z = s.observation->linearize(s.x, s.rate_b, layout);
+double worst_of(const Sample& s, const state::Layout& layout) {
+  const state::Linearized z = s.observation->linearize(s.x, s.rate_b, layout);
   if (z.H.cols() != layout.size() || z.H.rows() != z.r.size()) return INFINITY;
   double worst = 0;
   for (int row = 0; row < z.r.size(); ++row) {
-    const StateVector error =
-        gradient_by_differences(s, layout, row) - StateVector(z.H.row(row).transpose());
+    const state::StateVector error =
+        gradient_by_differences(s, layout, row) - state::StateVector(z.H.row(row).transpose());
     worst = std::max(worst, error.cwiseAbs().cwiseQuotient(tolerance(s, layout)).maxCoeff());
   }
   return worst;
@@ -195,11 +199,14 @@ TEST_P(Observations, JacobianIsThatOfDifferences) {
 /// Blocks elsewhere, or not at all.
 TEST_P(Observations, JacobianFollowsTheLayout) {
   std::mt19937 rng{43};
-  std::vector<Layout> layouts(4);
-  layouts[1].add(block::gyro_scale, 1).add(kTemperature, 1);
+  std::vector<state::Layout> layouts(4);
+  layouts[1].add(state::block::gyro_scale, 1).add(kTemperature, 1);
   layouts[2].add(kTemperature, 1);
-  layouts[3].add(Block{"unknown", 4, "1"}, 1).add(block::gyro_scale, 1).add(block::accel_scale, 1);
-  for (const Layout& layout : layouts) {
+  layouts[3]
+      .add(state::Block{"unknown", 4, "1"}, 1)
+      .add(state::block::gyro_scale, 1)
+      .add(state::block::accel_scale, 1);
+  for (const state::Layout& layout : layouts) {
     for (int i = 0; i < 20; ++i)
       EXPECT_LE(worst_of(random_sample(GetParam(), layout, rng), layout), 1) << layout.size();
   }
@@ -208,12 +215,12 @@ TEST_P(Observations, JacobianFollowsTheLayout) {
 /// An estimate without slow blocks and one where they are zero predict the same.
 TEST_P(Observations, SlowBlocksThatAreZeroChangeNothing) {
   std::mt19937 rng{44};
-  const Layout none;
+  const state::Layout none;
   for (int i = 0; i < 20; ++i) {
     Sample s = random_sample(GetParam(), none, rng);
-    const Linearized alone = s.observation->linearize(s.x, s.rate_b, none);
-    s.x.slow = SlowVector::Zero(every_block().slow_size());
-    const Linearized with = s.observation->linearize(s.x, s.rate_b, every_block());
+    const state::Linearized alone = s.observation->linearize(s.x, s.rate_b, none);
+    s.x.slow = state::SlowVector::Zero(every_block().slow_size());
+    const state::Linearized with = s.observation->linearize(s.x, s.rate_b, every_block());
     EXPECT_EQ(alone.r, with.r);
     EXPECT_EQ(alone.H, with.H.leftCols(none.size()));
     EXPECT_EQ(alone.R, with.R);
@@ -223,8 +230,8 @@ TEST_P(Observations, SlowBlocksThatAreZeroChangeNothing) {
 TEST_P(Observations, NoiseIsACovarianceOfEachRow) {
   std::mt19937 rng{45};
   const Sample s = random_sample(GetParam(), every_block(), rng);
-  const Linearized z = s.observation->linearize(s.x, s.rate_b, every_block());
-  EXPECT_LE(z.r.size(), kMostMeasured);
+  const state::Linearized z = s.observation->linearize(s.x, s.rate_b, every_block());
+  EXPECT_LE(z.r.size(), state::kMostMeasured);
   ASSERT_EQ(z.R.rows(), z.r.size());
   ASSERT_EQ(z.R.cols(), z.r.size());
   EXPECT_EQ(z.R, z.R.transpose());
@@ -256,9 +263,9 @@ class Spoilt final : public Observation {
   Spoilt(ObservationPtr sound, int column, double factor)
       : sound_(std::move(sound)), column_(column), factor_(factor) {}
   std::string_view name() const override { return "spoilt"; }
-  Linearized linearize(const NavState& x, const Eigen::Vector3d& rate_b,
-                       const Layout& layout) const override {
-    Linearized z = sound_->linearize(x, rate_b, layout);
+  state::Linearized linearize(const state::NavState& x, const Eigen::Vector3d& rate_b,
+                              const state::Layout& layout) const override {
+    state::Linearized z = sound_->linearize(x, rate_b, layout);
     z.H.col(column_) *= factor_;
     return z;
   }
@@ -271,9 +278,9 @@ class Spoilt final : public Observation {
 
 TEST_P(Observations, WrongColumnsAreSeen) {
   std::mt19937 rng{47};
-  const Layout layout = every_block();
+  const state::Layout layout = every_block();
   const Sample sound = random_sample(GetParam(), layout, rng);
-  const Linearized z = sound.observation->linearize(sound.x, sound.rate_b, layout);
+  const state::Linearized z = sound.observation->linearize(sound.x, sound.rate_b, layout);
   int spoilt = 0;
   for (int column = 0; column < layout.size(); ++column) {
     if (z.H.col(column).cwiseAbs().maxCoeff() < 0.05) continue;
@@ -291,50 +298,52 @@ TEST_P(Observations, WrongColumnsAreSeen) {
 /// ECEF.
 class Antenna {
  public:
-  Antenna() : trajectory_(make_trajectory(options())) {}
+  Antenna() : trajectory_(simulation::make_trajectory(options())) {}
 
   double duration() const { return trajectory_.duration(); }
-  Motion imu(double t) const { return trajectory_.at(t); }
+  simulation::Motion imu(double t) const { return trajectory_.at(t); }
 
   Eigen::Vector3d p_e(double t) const {
-    const Motion m = imu(t);
-    return m.p_e + wgs84::R_e_n(m.position.latitude, m.position.longitude) * (m.q_n_v * p_b_a);
+    const simulation::Motion m = imu(t);
+    return m.p_e +
+           geodesy::wgs84::R_e_n(m.position.latitude, m.position.longitude) * (m.q_n_v * p_b_a);
   }
 
   /// Velocity in the NED of the IMU, by differences: ECEF is rounded to 1e-9 m, over 1 ms.
   Eigen::Vector3d velocity_n(double t) const {
-    const Motion m = imu(t);
+    const simulation::Motion m = imu(t);
     const Eigen::Vector3d velocity_e = (p_e(t + 5e-4) - p_e(t - 5e-4)) / 1e-3;
-    return wgs84::R_e_n(m.position.latitude, m.position.longitude).transpose() * velocity_e;
+    return geodesy::wgs84::R_e_n(m.position.latitude, m.position.longitude).transpose() *
+           velocity_e;
   }
 
   const Eigen::Vector3d p_b_a{0.4, -0.7, -1.2};
 
  private:
-  static ScenarioOptions options() {
-    ScenarioOptions o;
+  static simulation::ScenarioOptions options() {
+    simulation::ScenarioOptions o;
     o.name = "city";
     o.duration_s = 300;
     o.seed = 5;
     return o;
   }
 
-  Trajectory trajectory_;
+  simulation::Trajectory trajectory_;
 };
 
 /// The state and the rate that sensors of these errors would show.
 struct AtAntenna {
-  NavState x;
+  state::NavState x;
   Eigen::Vector3d rate_b;
 };
 
-AtAntenna at(const Motion& m, const Layout& layout) {
+AtAntenna at(const simulation::Motion& m, const state::Layout& layout) {
   AtAntenna a;
   a.x.position = m.position;
   a.x.velocity_n = m.velocity_n;
   a.x.q_n_b = m.q_n_v;
   a.x.bias.gyro = Eigen::Vector3d(0.02, -0.01, 0.03);
-  a.x.slow = SlowVector::LinSpaced(layout.slow_size(), -0.03, 0.04);
+  a.x.slow = state::SlowVector::LinSpaced(layout.slow_size(), -0.03, 0.04);
   const Eigen::Array3d scale = 1 + layout.imu_scale(a.x.slow).gyro.array();
   a.rate_b = (scale * m.omega_iv_v.array()).matrix() + a.x.bias.gyro;
   return a;
@@ -347,12 +356,12 @@ struct Residuals {
 
 Residuals along_the_way(const Antenna& antenna, const Eigen::Vector3d& lever_arm) {
   Residuals most;
-  const Layout layout = every_block();
+  const state::Layout layout = every_block();
   for (double t = 1; t < antenna.duration() - 1; t += 0.5) {
     const AtAntenna a = at(antenna.imu(t), layout);
     GnssFix fix;
     fix.p_b_a = lever_arm;
-    fix.antenna = wgs84::ecef_to_geodetic(antenna.p_e(t));
+    fix.antenna = geodesy::wgs84::ecef_to_geodetic(antenna.p_e(t));
     fix.velocity_n = antenna.velocity_n(t);
     const auto residual = [&](const Observation& o) {
       return o.linearize(a.x, a.rate_b, layout).r.cwiseAbs().maxCoeff();
@@ -384,7 +393,7 @@ TEST(GnssObservations, OfATurnedLeverArmLeaveResiduals) {
 /// A scale of 3 % in a turn at 0.4 rad/s swings 1.2 m by 14 mm/s.
 TEST(GnssVelocity, SeesTheScaleOfTheGyroscopes) {
   const Antenna antenna;
-  const Layout layout = every_block();
+  const state::Layout layout = every_block();
   double most = 0;
   for (double t = 1; t < antenna.duration() - 1; t += 0.5) {
     AtAntenna a = at(antenna.imu(t), layout);

@@ -45,23 +45,24 @@ class TurnAfter {
 };
 
 std::optional<CourseAfter> course_by_velocity(const GnssFix& fix, double turned) {
-  const bool coarse = horizontal_sigma(fix.position_covariance) > kPreciseSigma;
+  const bool coarse = geodesy::horizontal_sigma(fix.position_covariance) > geodesy::kPreciseSigma;
   if (!coarse || !fix.velocity_n || fix.velocity_n->head<2>().norm() < kSlowest) {
     return std::nullopt;
   }
-  return CourseAfter{azimuth(*fix.velocity_n),
-                     course_sigma(fix.velocity_covariance, *fix.velocity_n), turned};
+  return CourseAfter{geodesy::azimuth(*fix.velocity_n),
+                     geodesy::course_sigma(fix.velocity_covariance, *fix.velocity_n), turned};
 }
 
 std::optional<CourseAfter> course_by_way(const GnssFix& first, double turned_first,
                                          const GnssFix& last, double turned_last) {
   const double dt = seconds_between(first.t_ns, last.t_ns);
   if (dt < kShortestWay) return std::nullopt;
-  const Vector3d way = LocalFrame(first.antenna).to_local(last.antenna);
+  const Vector3d way = geodesy::LocalFrame(first.antenna).to_local(last.antenna);
   if (way.head<2>().norm() < kSlowest * dt) return std::nullopt;
-  return CourseAfter{azimuth(way),
-                     course_sigma(first.position_covariance + last.position_covariance, way),
-                     0.5 * (turned_first + turned_last)};
+  return CourseAfter{
+      geodesy::azimuth(way),
+      geodesy::course_sigma(first.position_covariance + last.position_covariance, way),
+      0.5 * (turned_first + turned_last)};
 }
 
 std::optional<CourseAfter> course_after(const ImuHole& hole, const std::deque<Measurement>& after) {
@@ -102,10 +103,11 @@ std::optional<HoleTurn> turn_over(const ImuHole& hole, const std::deque<Measurem
   if (speed < kSlowest) return std::nullopt;
   const std::optional<CourseAfter> end = course_after(hole, after);
   if (!end || end->sigma > kCoarsest) return std::nullopt;
-  const Eigen::Matrix3d P = hole.before.covariance_of(block::velocity);
+  const Eigen::Matrix3d P = hole.before.covariance_of(state::block::velocity);
   HoleTurn turn;
-  turn.angle = so3::wrap(end->course - azimuth(velocity) - end->turned);
-  turn.sigma = std::hypot(std::hypot(end->sigma, course_sigma(P, velocity)), kSideslipSigma);
+  turn.angle = so3::wrap(end->course - geodesy::azimuth(velocity) - end->turned);
+  turn.sigma =
+      std::hypot(std::hypot(end->sigma, geodesy::course_sigma(P, velocity)), kSideslipSigma);
   return turn;
 }
 

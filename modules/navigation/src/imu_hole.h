@@ -19,7 +19,7 @@ struct HoleTurn {
 
 /// Both ends of a hole.
 struct ImuHole {
-  Epoch before;                                              ///< state where the data end
+  state::Epoch before;                                       ///< state where the data end
   Eigen::Vector3d gyro_before_b = Eigen::Vector3d::Zero();   ///< mean rates there [rad/s]
   Eigen::Vector3d accel_before_b = Eigen::Vector3d::Zero();  ///< [m/s^2]
   double interval = 0;                                       ///< length of increments there [s]

@@ -20,9 +20,9 @@ void PredictionProbe::propagate(const ImuIncrement& increment) {
   if (ahead_) ahead_->propagate(increment);
 }
 
-std::optional<PredictionResult> PredictionProbe::meet(const GnssFix& fix,
-                                                      const Navigator& navigator) {
-  std::optional<PredictionResult> result;
+std::optional<state::PredictionResult> PredictionProbe::meet(
+    const GnssFix& fix, const measurement::Navigator& navigator) {
+  std::optional<state::PredictionResult> result;
   if (ahead_) result = compare(fix);
   if (!due_ns_) due_ns_ = fix.t_ns + nanoseconds(kSettlingS);
   if (!ahead_ && fix.t_ns >= *due_ns_) {
@@ -35,15 +35,15 @@ std::optional<PredictionResult> PredictionProbe::meet(const GnssFix& fix,
 }
 
 /// Horizons in which no fix came are left out.
-std::optional<PredictionResult> PredictionProbe::compare(const GnssFix& fix) {
+std::optional<state::PredictionResult> PredictionProbe::compare(const GnssFix& fix) {
   constexpr double kJitter = 5e-3;  // [s], of recorded stamps
   const double after_s = seconds_between(begin_ns_, fix.t_ns);
   while (horizon_ < kHorizonsS.size() && after_s > kLatest * kHorizonsS[horizon_]) ++horizon_;
-  std::optional<PredictionResult> result;
+  std::optional<state::PredictionResult> result;
   if (horizon_ < kHorizonsS.size() && after_s >= kHorizonsS[horizon_] - kJitter) {
-    const Innovation innovation = ahead_->innovation(GnssPosition(fix));
-    result =
-        PredictionResult{fix.t_ns, kHorizonsS[horizon_], innovation.value, innovation.covariance};
+    const state::Innovation innovation = ahead_->innovation(measurement::GnssPosition(fix));
+    result = state::PredictionResult{fix.t_ns, kHorizonsS[horizon_], innovation.value,
+                                     innovation.covariance};
     ++horizon_;
   }
   if (horizon_ == kHorizonsS.size()) ahead_.reset();

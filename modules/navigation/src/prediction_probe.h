@@ -21,15 +21,16 @@ class PredictionProbe {
 
   /// A fix at the current time that the navigator has used: its prediction where a horizon ends, at
   /// most a fifth late. A probe starts here if it is time.
-  std::optional<PredictionResult> meet(const GnssFix& fix, const Navigator& navigator);
+  std::optional<state::PredictionResult> meet(const GnssFix& fix,
+                                              const measurement::Navigator& navigator);
 
   /// The navigator starts anew.
   void restart() { ahead_.reset(); }
 
  private:
-  std::optional<PredictionResult> compare(const GnssFix& fix);
+  std::optional<state::PredictionResult> compare(const GnssFix& fix);
 
-  std::unique_ptr<Navigator> ahead_;
+  std::unique_ptr<measurement::Navigator> ahead_;
   int64_t begin_ns_ = 0;           ///< of the probe, or of the last one
   std::size_t horizon_ = 0;        ///< index of the one that ends next
   std::optional<int64_t> due_ns_;  ///< when the next probe starts

@@ -4,7 +4,7 @@
 
 namespace foucault::navigation {
 
-std::optional<std::string> unsound_part(const Epoch& epoch) {
+std::optional<std::string> unsound_part(const state::Epoch& epoch) {
   const Geodetic& p = epoch.position;
   if (!std::isfinite(p.latitude + p.longitude + p.height)) return "position";
   if (!epoch.velocity_n.allFinite()) return "velocity";

@@ -17,7 +17,7 @@ class DrivingTest : public ::testing::Test {
   Driving& driving() {
     if (!driving_) {
       driving_.emplace(std::make_unique<FakeNavigator>(log_, Vector3d::Zero()), options_, sink_);
-      Epoch initial;
+      state::Epoch initial;
       initial.t_ns = at(0);
       driving_->start(initial);
     }
@@ -46,7 +46,7 @@ TEST_F(DrivingTest, StopsAtWhatIsDueAndTellsTheSink) {
   EXPECT_THAT(log_.calls, ElementsAre("start@0", "update@23"));
   EXPECT_THAT(sink_.epochs_ms, ElementsAre(0, 23, 26));
   EXPECT_EQ(driving().time_ns(), at(30));
-  EXPECT_EQ(sink_.fixes.at(0).verdict, FixVerdict::used);
+  EXPECT_EQ(sink_.fixes.at(0).verdict, state::FixVerdict::used);
 }
 
 TEST_F(DrivingTest, AHoleEndsTheWayBeforeIt) {
@@ -94,7 +94,7 @@ TEST_F(DrivingTest, ADoubtThatIsDecidedIsCarriedOut) {
   outcome.notices = {"one is wrong"};
   log_.calls.clear();
   EXPECT_TRUE(goes_on(driving().resume(fix, outcome)));
-  EXPECT_EQ(sink_.fixes.back().verdict, FixVerdict::gated);
+  EXPECT_EQ(sink_.fixes.back().verdict, state::FixVerdict::gated);
   EXPECT_EQ(sink_.notices.back().text, "one is wrong");
   EXPECT_THAT(log_.calls, ElementsAre());
   EXPECT_EQ(sink_.epochs_ms.back(), 12500);
@@ -124,7 +124,7 @@ TEST_F(DrivingTest, LateFixesAreLeftOutAndCounted) {
   take(increment_between(0, 100));
   take(fix_at(50));
   EXPECT_EQ(driving().late_fixes(), 1);
-  EXPECT_EQ(sink_.fixes.back().verdict, FixVerdict::out_of_order);
+  EXPECT_EQ(sink_.fixes.back().verdict, state::FixVerdict::out_of_order);
 }
 
 TEST_F(DrivingTest, ASigmaThatIsNoneIsNamedOnce) {
@@ -135,7 +135,7 @@ TEST_F(DrivingTest, ASigmaThatIsNoneIsNamedOnce) {
   }
   take(increment_between(0, 100));
   EXPECT_EQ(sink_.fixes.size(), 2u);
-  EXPECT_EQ(sink_.fixes.back().verdict, FixVerdict::bad_sigma);
+  EXPECT_EQ(sink_.fixes.back().verdict, state::FixVerdict::bad_sigma);
   EXPECT_EQ(sink_.notices.size(), 1u);
 }
 

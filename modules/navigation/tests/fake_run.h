@@ -39,9 +39,9 @@ inline double ms_of(int64_t t_ns) { return static_cast<double>(t_ns - kStart) / 
 struct Log {
   std::vector<std::string> calls;
   std::vector<ImuIncrement> propagated;
-  std::vector<Epoch> starts;
-  std::vector<std::pair<int64_t, Linearized>> updates;  ///< by stamp
-  std::function<void(Epoch&)> spoil;                    ///< the state from now on, if any
+  std::vector<state::Epoch> starts;
+  std::vector<std::pair<int64_t, state::Linearized>> updates;  ///< by stamp
+  std::function<void(state::Epoch&)> spoil;                    ///< the state from now on, if any
 
   void add(const char* what, double ms) {
     calls.push_back(std::string(what) + "@" + std::to_string(static_cast<int>(std::lround(ms))));
@@ -53,7 +53,7 @@ class FakeNavigator : public Navigator {
  public:
   FakeNavigator(Log& log, const Vector3d& velocity_n) : log_(log), velocity_n_(velocity_n) {}
 
-  void start(const Epoch& initial) override {
+  void start(const state::Epoch& initial) override {
     log_.starts.push_back(initial);
     now_ns_ = initial.t_ns;
     log_.add("start", ms_of(now_ns_));
@@ -63,15 +63,15 @@ class FakeNavigator : public Navigator {
     log_.propagated.push_back(increment);
     now_ns_ = increment.t_end_ns;
   }
-  Innovation innovation(const Observation& observation) const override {
-    const Linearized z = linearize(observation);
+  state::Innovation innovation(const Observation& observation) const override {
+    const state::Linearized z = linearize(observation);
     return {z.r, z.R};
   }
   void update(const ObservationPtr& observation) override {
     log_.updates.emplace_back(now_ns_, linearize(*observation));
     log_.add("update", ms_of(now_ns_));
   }
-  void loosen(const NodeMatrix&) override { log_.add("loosen", ms_of(now_ns_)); }
+  void loosen(const state::NodeMatrix&) override { log_.add("loosen", ms_of(now_ns_)); }
   std::unique_ptr<Navigator> ahead(double) const override {
     static Log unseen;
     auto copy = std::make_unique<FakeNavigator>(unseen, velocity_n_);
@@ -79,8 +79,8 @@ class FakeNavigator : public Navigator {
     return copy;
   }
   void hold() override { log_.add("hold", ms_of(now_ns_)); }
-  Epoch epoch() const override {
-    Epoch epoch;
+  state::Epoch epoch() const override {
+    state::Epoch epoch;
     epoch.t_ns = now_ns_;
     epoch.position = kPlace;
     epoch.velocity_n = velocity_n_;
@@ -89,8 +89,8 @@ class FakeNavigator : public Navigator {
   }
 
  private:
-  Linearized linearize(const Observation& observation) const {
-    return observation.linearize(epoch(), Vector3d::Zero(), Layout{});
+  state::Linearized linearize(const Observation& observation) const {
+    return observation.linearize(epoch(), Vector3d::Zero(), state::Layout{});
   }
 
   Log& log_;
@@ -98,19 +98,19 @@ class FakeNavigator : public Navigator {
   int64_t now_ns_ = 0;
 };
 
-struct RecordingSink : Sink {
+struct RecordingSink : state::Sink {
   std::vector<double> epochs_ms;
-  std::vector<FixResult> fixes;
-  std::vector<Notice> notices;
-  std::vector<PredictionResult> predictions;
+  std::vector<state::FixResult> fixes;
+  std::vector<state::Notice> notices;
+  std::vector<state::PredictionResult> predictions;
   bool predict = false;
   bool wants_predictions() const override { return predict; }
-  void prediction(const PredictionResult& p) override { predictions.push_back(p); }
-  void epoch(const Epoch& e) override { epochs_ms.push_back(ms_of(e.t_ns)); }
-  void fix(const FixResult& f) override { fixes.push_back(f); }
-  void observation(const ObservationResult& o) override { observations.push_back(o); }
-  std::vector<ObservationResult> observations;
-  void notice(const Notice& n) override { notices.push_back(n); }
+  void prediction(const state::PredictionResult& p) override { predictions.push_back(p); }
+  void epoch(const state::Epoch& e) override { epochs_ms.push_back(ms_of(e.t_ns)); }
+  void fix(const state::FixResult& f) override { fixes.push_back(f); }
+  void observation(const state::ObservationResult& o) override { observations.push_back(o); }
+  std::vector<state::ObservationResult> observations;
+  void notice(const state::Notice& n) override { notices.push_back(n); }
 };
 
 inline GnssFix fix_at(double ms, const Vector3d& offset_n = Vector3d::Zero(), double sigma = 0.1) {

@@ -69,12 +69,12 @@ TEST_F(IntakeTest, AFixOfAnotherClockIsNeverSeen) {
 TEST_F(IntakeTest, FixesThatCannotBeAreShownAsLeftOut) {
   admit(increment_between(0, 10));
   admit(fix_at(10));
-  EXPECT_EQ(admit(fix_at(10)).left_out, FixVerdict::out_of_order);
+  EXPECT_EQ(admit(fix_at(10)).left_out, state::FixVerdict::out_of_order);
   GnssFix nowhere = fix_at(20);
   nowhere.antenna = Geodetic{};
   const Admitted none = admit(nowhere);
   EXPECT_FALSE(none.measurement);
-  EXPECT_EQ(none.left_out, FixVerdict::bad_sigma);
+  EXPECT_EQ(none.left_out, state::FixVerdict::bad_sigma);
   EXPECT_THAT(intake().summary(3),
               ElementsAre(HasSubstr("1 fixes"), HasSubstr("1 fixes repeat the one before"),
                           HasSubstr("3 fixes came after later ones")));

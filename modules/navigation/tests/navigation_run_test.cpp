@@ -26,12 +26,13 @@ class NavigationRunTest : public ::testing::Test {
  protected:
   NavigationRun& run() {
     if (!run_) {
-      AlignmentOptions alignment;
+      alignment::AlignmentOptions alignment;
       alignment.mode = "given";
       alignment.roll_deg = alignment.pitch_deg = alignment.heading_deg = 0;
       run_ = std::make_unique<NavigationRun>(
           std::make_unique<FakeNavigator>(log_, velocity_n_),
-          Aligner(alignment, imu_preset("ADIS16465"), Mounting{}), options_, sink_);
+          alignment::Aligner(alignment, imu::imu_preset("ADIS16465"), state::Mounting{}), options_,
+          sink_);
     }
     return *run_;
   }
@@ -84,18 +85,19 @@ TEST_F(NavigationRunTest, SplitsIncrementsAtFixesAndRequests) {
   EXPECT_THAT(sink_.epochs_ms, ElementsAre(10, 23, 26));
 }
 
-class UnsoundState
-    : public NavigationRunTest,
-      public ::testing::WithParamInterface<std::pair<const char*, std::function<void(Epoch&)>>> {};
+class UnsoundState : public NavigationRunTest,
+                     public ::testing::WithParamInterface<
+                         std::pair<const char*, std::function<void(state::Epoch&)>>> {};
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 INSTANTIATE_TEST_SUITE_P(
     Parts, UnsoundState,
-    ::testing::Values(std::pair("position", [](Epoch& e) { e.position.longitude = kNan; }),
-                      std::pair("velocity", [](Epoch& e) { e.velocity_n.y() = 1 / 0.0; }),
-                      std::pair("attitude", [](Epoch& e) { e.q_n_b.x() = kNan; }),
-                      std::pair("IMU biases", [](Epoch& e) { e.bias.accel.z() = kNan; }),
-                      std::pair("covariance", [](Epoch& e) { e.covariance(3, 8) = kNan; }),
-                      std::pair("covariance", [](Epoch& e) { e.covariance(7, 7) = -1e-9; })));
+    ::testing::Values(std::pair("position", [](state::Epoch& e) { e.position.longitude = kNan; }),
+                      std::pair("velocity", [](state::Epoch& e) { e.velocity_n.y() = 1 / 0.0; }),
+                      std::pair("attitude", [](state::Epoch& e) { e.q_n_b.x() = kNan; }),
+                      std::pair("IMU biases", [](state::Epoch& e) { e.bias.accel.z() = kNan; }),
+                      std::pair("covariance", [](state::Epoch& e) { e.covariance(3, 8) = kNan; }),
+                      std::pair("covariance",
+                                [](state::Epoch& e) { e.covariance(7, 7) = -1e-9; })));
 
 TEST_P(UnsoundState, IsAnErrorAndNoRow) {
   align();
@@ -184,7 +186,7 @@ TEST_F(NavigationRunTest, PredictsUsedFixesAheadIfThatIsWanted) {
       feed_imu(1000 * t, 1000 * t + 10);
     }
     std::vector<double> horizons;
-    for (const PredictionResult& p : sink_.predictions) {
+    for (const state::PredictionResult& p : sink_.predictions) {
       horizons.push_back(p.ahead_s);
       EXPECT_NEAR(p.innovation_n.norm(), 0.1, 1e-6);
       EXPECT_GT(p.innovation_covariance(0, 0), 0);
@@ -238,7 +240,7 @@ TEST_F(NavigationRunTest, BridgesAHoleWithTheRatesBeforeItAndMoreNoise) {
   EXPECT_EQ(log_.propagated.back().extra_gyro_noise_density, 0);
   EXPECT_THAT(log_.calls, ElementsAre("hold@1010", "update@1505", "hold@2505"));
   ASSERT_GE(sink_.notices.size(), 2u);
-  EXPECT_EQ(sink_.notices.back().kind, NoticeKind::imu_gap);
+  EXPECT_EQ(sink_.notices.back().kind, state::NoticeKind::imu_gap);
 }
 
 TEST_F(NavigationRunTest, ShortHolesAreBridgedAtOnce) {
@@ -300,9 +302,10 @@ TEST_F(NavigationRunTest, AlignsAnewAfterALongHole) {
   feed_imu(15100, 15200);
   ASSERT_EQ(log_.starts.size(), 2u);
   EXPECT_EQ(ms_of(log_.starts[1].t_ns), 15105);
-  std::vector<NoticeKind> kinds;
-  for (const Notice& notice : sink_.notices) kinds.push_back(notice.kind);
-  EXPECT_THAT(kinds, ElementsAre(NoticeKind::aligned, NoticeKind::imu_gap, NoticeKind::realigned));
+  std::vector<state::NoticeKind> kinds;
+  for (const state::Notice& notice : sink_.notices) kinds.push_back(notice.kind);
+  EXPECT_THAT(kinds, ElementsAre(state::NoticeKind::aligned, state::NoticeKind::imu_gap,
+                                 state::NoticeKind::realigned));
 }
 
 TEST_F(NavigationRunTest, IncrementsOutOfOrderOrNotFiniteAreLeftOutAndNamed) {
@@ -324,7 +327,7 @@ TEST_F(NavigationRunTest, IncrementsOutOfOrderOrNotFiniteAreLeftOutAndNamed) {
   }
   EXPECT_EQ(ms_of(end_ns), 70);
   std::string notices;
-  for (const Notice& notice : sink_.notices) notices += notice.text + "\n";
+  for (const state::Notice& notice : sink_.notices) notices += notice.text + "\n";
   EXPECT_THAT(notices, HasSubstr("1 IMU samples are not finite"));
   EXPECT_THAT(notices, HasSubstr("1700000000.040"));
   EXPECT_THAT(notices, HasSubstr("2 IMU samples do not come after"));
@@ -357,7 +360,7 @@ TEST_F(NavigationRunTest, AFixThatComesTwiceIsUsedOnce) {
   feed_imu(10, 50);
   EXPECT_EQ(log_.updates.size(), 1u);
   ASSERT_EQ(sink_.fixes.size(), 2u);
-  EXPECT_EQ(sink_.fixes.front().verdict, FixVerdict::out_of_order);
+  EXPECT_EQ(sink_.fixes.front().verdict, state::FixVerdict::out_of_order);
 }
 
 TEST_F(NavigationRunTest, OutlierIsGatedAndReported) {
@@ -366,9 +369,9 @@ TEST_F(NavigationRunTest, OutlierIsGatedAndReported) {
   run().process(fix_at(30, Vector3d(0.1, -0.1, 0)));
   feed_imu(10, 40);
   ASSERT_EQ(sink_.fixes.size(), 2u);
-  EXPECT_EQ(sink_.fixes[0].verdict, FixVerdict::gated);
+  EXPECT_EQ(sink_.fixes[0].verdict, state::FixVerdict::gated);
   EXPECT_NEAR(sink_.fixes[0].innovation_n.x(), 10, 1e-6);
-  EXPECT_EQ(sink_.fixes[1].verdict, FixVerdict::used);
+  EXPECT_EQ(sink_.fixes[1].verdict, state::FixVerdict::used);
   EXPECT_NEAR(sink_.fixes[1].postfit_n.x(), 0.1, 1e-6);
   EXPECT_THAT(log_.calls, ElementsAre("update@30"));
 }
@@ -380,8 +383,8 @@ TEST_F(NavigationRunTest, GateHasTheProbabilityItNames) {
   run().process(fix_at(20, Vector3d(0.1 * std::sqrt(11.35), 0, 0)));
   run().process(fix_at(30, Vector3d(0, 0.1 * std::sqrt(11.34), 0)));
   feed_imu(10, 40);
-  EXPECT_EQ(sink_.fixes[0].verdict, FixVerdict::gated);
-  EXPECT_EQ(sink_.fixes[1].verdict, FixVerdict::used);
+  EXPECT_EQ(sink_.fixes[0].verdict, state::FixVerdict::gated);
+  EXPECT_EQ(sink_.fixes[1].verdict, state::FixVerdict::used);
 }
 
 TEST_F(NavigationRunTest, NoGateWhenSwitchedOff) {
@@ -389,7 +392,7 @@ TEST_F(NavigationRunTest, NoGateWhenSwitchedOff) {
   align();
   run().process(fix_at(20, Vector3d(1000, 0, 0)));
   feed_imu(10, 40);
-  EXPECT_EQ(sink_.fixes[0].verdict, FixVerdict::used);
+  EXPECT_EQ(sink_.fixes[0].verdict, state::FixVerdict::used);
 }
 
 /// From the first of them on; soon after the alignment, which may have been wrong.
@@ -401,11 +404,11 @@ TEST_F(NavigationRunTest, ManyOutliersInARowAreBelieved) {
   run().process(fix_at(14500, Vector3d(10, 0, 0)));  // the gate has long closed again
   run().process(fix_at(15000));
   feed_imu(10, 15020);
-  std::vector<FixVerdict> verdicts;
-  for (const FixResult& result : sink_.fixes) verdicts.push_back(result.verdict);
-  std::vector<FixVerdict> expected(5 + 14, FixVerdict::used);
-  expected.push_back(FixVerdict::gated);
-  expected.push_back(FixVerdict::used);
+  std::vector<state::FixVerdict> verdicts;
+  for (const state::FixResult& result : sink_.fixes) verdicts.push_back(result.verdict);
+  std::vector<state::FixVerdict> expected(5 + 14, state::FixVerdict::used);
+  expected.push_back(state::FixVerdict::gated);
+  expected.push_back(state::FixVerdict::used);
   EXPECT_EQ(verdicts, expected);
 }
 
@@ -418,8 +421,8 @@ TEST_F(NavigationRunTest, ABetterQualityDoesNotMakeAFixTrue) {
   run().process(fix_at(40));
   feed_imu(10, 50);
   ASSERT_EQ(sink_.fixes.size(), 3u);
-  EXPECT_EQ(sink_.fixes[1].verdict, FixVerdict::gated);
-  EXPECT_EQ(sink_.fixes[2].verdict, FixVerdict::used);
+  EXPECT_EQ(sink_.fixes[1].verdict, state::FixVerdict::gated);
+  EXPECT_EQ(sink_.fixes[2].verdict, state::FixVerdict::used);
 }
 
 TEST_F(NavigationRunTest, FixesOfLowQualityAreLeftOut) {
@@ -430,7 +433,7 @@ TEST_F(NavigationRunTest, FixesOfLowQualityAreLeftOut) {
   run().process(fix);
   feed_imu(10, 30);
   ASSERT_EQ(sink_.fixes.size(), 1u);
-  EXPECT_EQ(sink_.fixes[0].verdict, FixVerdict::low_quality);
+  EXPECT_EQ(sink_.fixes[0].verdict, state::FixVerdict::low_quality);
   EXPECT_TRUE(log_.updates.empty());
 }
 
@@ -610,10 +613,11 @@ TEST_F(NavigationRunTest, FixesWithoutUsableSigmaAreCountedAndNoticedOnce) {
   for (const GnssFix& fix : {zero, nan, nowhere}) run().process(fix);
   feed_imu(10, 50);
   ASSERT_EQ(sink_.fixes.size(), 3u);
-  for (const FixResult& result : sink_.fixes) EXPECT_EQ(result.verdict, FixVerdict::bad_sigma);
+  for (const state::FixResult& result : sink_.fixes)
+    EXPECT_EQ(result.verdict, state::FixVerdict::bad_sigma);
   int rejections = 0;
-  for (const Notice& notice : sink_.notices) {
-    rejections += notice.kind == NoticeKind::fix_rejected ? 1 : 0;
+  for (const state::Notice& notice : sink_.notices) {
+    rejections += notice.kind == state::NoticeKind::fix_rejected ? 1 : 0;
   }
   EXPECT_EQ(rejections, 1);
   EXPECT_TRUE(log_.updates.empty());
@@ -625,7 +629,7 @@ TEST_F(NavigationRunTest, LateFixIsReportedNotUsed) {
   feed_imu(10, 100);
   run().process(fix_at(50));
   ASSERT_EQ(sink_.fixes.size(), 1u);
-  EXPECT_EQ(sink_.fixes[0].verdict, FixVerdict::out_of_order);
+  EXPECT_EQ(sink_.fixes[0].verdict, state::FixVerdict::out_of_order);
   EXPECT_TRUE(log_.updates.empty());
 }
 
@@ -671,8 +675,9 @@ TEST(NavigationRunWithRest, ReplaysWhatCameBeforeTheAlignment) {
   NavigationRunOptions options;
   options.gnss.gate_false_alarm = 0;  // the fake navigator does not move along
   NavigationRun run(std::make_unique<FakeNavigator>(log, Vector3d::Zero()),
-                    Aligner(AlignmentOptions(), imu_preset("ADIS16465"), Mounting{}), options,
-                    sink);
+                    alignment::Aligner(alignment::AlignmentOptions(), imu::imu_preset("ADIS16465"),
+                                       state::Mounting{}),
+                    options, sink);
   int64_t fixes = 0, increments = 0;
   for (const Measurement& m : simulator.stream()) {
     fixes += std::holds_alternative<GnssFix>(m) ? 1 : 0;
@@ -689,12 +694,12 @@ TEST(NavigationRunWithRest, ReplaysWhatCameBeforeTheAlignment) {
 }
 
 TEST(GnssOptions, RoundTripAndRanges) {
-  GnssOptions options;
+  diagnosis::GnssOptions options;
   load_config_text(
       "{min_quality: ppp, sigma_scale: 3, sigma_floor_m: 0.02, gate_false_alarm: 0.01,"
       " reinstate_after: 7}",
       "test", options);
-  GnssOptions again;
+  diagnosis::GnssOptions again;
   load_config_text(dump_config(options), "again", again);
   EXPECT_EQ(again.min_quality, "ppp");
   EXPECT_EQ(again.sigma_scale, 3);

@@ -19,18 +19,18 @@ using ::testing::ElementsAre;
 using ::testing::Pair;
 
 /// Its innovation tells how long it has propagated since the last update [s].
-class Coasting : public Navigator {
+class Coasting : public measurement::Navigator {
  public:
-  void start(const Epoch&) override {}
+  void start(const state::Epoch&) override {}
   void propagate(const ImuIncrement& increment) override { since_update_s_ += increment.dt(); }
-  Innovation innovation(const Observation&) const override {
+  state::Innovation innovation(const measurement::Observation&) const override {
     return {Eigen::Vector3d(since_update_s_, 0, 0), Eigen::Matrix3d::Identity()};
   }
-  void update(const ObservationPtr&) override { since_update_s_ = 0; }
-  void loosen(const NodeMatrix&) override {}
+  void update(const measurement::ObservationPtr&) override { since_update_s_ = 0; }
+  void loosen(const state::NodeMatrix&) override {}
   void hold() override {}
-  Epoch epoch() const override { return {}; }
-  std::unique_ptr<Navigator> ahead(double) const override {
+  state::Epoch epoch() const override { return {}; }
+  std::unique_ptr<measurement::Navigator> ahead(double) const override {
     ++copies;
     return std::make_unique<Coasting>(*this);
   }
@@ -57,7 +57,7 @@ Predictions drive(int until_s, const std::function<bool(int)>& fixed, Coasting& 
     if (!fixed(t)) continue;
     GnssFix fix;
     fix.t_ns = nanoseconds(t);
-    navigator.update(gnss_position(fix));
+    navigator.update(measurement::gnss_position(fix));
     const auto prediction = probe.meet(fix, navigator);
     if (prediction) predictions.emplace_back(prediction->ahead_s, prediction->innovation_n.x());
   }

@@ -2,7 +2,7 @@
 
 namespace foucault::preintegration {
 
-EarthModel earth_model(PreintegrationModel model, const LocalFrame& frame,
+EarthModel earth_model(PreintegrationModel model, const geodesy::LocalFrame& frame,
                        const Eigen::Vector3d& p_w) {
   EarthModel earth;
   if (model != PreintegrationModel::rough) earth.omega_ie_w = frame.earth_rate_w();

@@ -11,7 +11,7 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
-using namespace block;
+using namespace state::block;
 
 /// The preintegration at the biases of a node and at scale factors, (46).
 struct Corrected {
@@ -20,7 +20,8 @@ struct Corrected {
   Vector3d dq_shift;
 };
 
-Corrected correct(const MotionDeltas& pre, const ImuBias& bias, const ImuScale& scale) {
+Corrected correct(const MotionDeltas& pre, const state::ImuBias& bias,
+                  const state::ImuScale& scale) {
   const Vector3d dg = bias.gyro - pre.bias.gyro;
   const Vector3d da = bias.accel - pre.bias.accel;
   Vector3d dp = pre.dp + pre.by_gyro_bias.dp * dg + pre.by_accel_bias.dp * da;
@@ -37,8 +38,8 @@ Corrected correct(const MotionDeltas& pre, const ImuBias& bias, const ImuScale& 
 }
 
 /// A bias of b0 at the beginning decays towards the one at which the interval was integrated.
-ImuBias expected_bias(const ImuBias& b0, const MotionDeltas& pre) {
-  ImuBias b1;
+state::ImuBias expected_bias(const state::ImuBias& b0, const MotionDeltas& pre) {
+  state::ImuBias b1;
   b1.gyro = pre.bias.gyro + pre.gyro_bias_decay * (b0.gyro - pre.bias.gyro);
   b1.accel = pre.bias.accel + pre.accel_bias_decay * (b0.accel - pre.bias.accel);
   return b1;
@@ -63,7 +64,7 @@ struct Fall {
   Matrix3d gradient;  ///< G' = G + [w x]^2
   Vector3d way;       ///< v0 T + S2 g0 + G' (v0 T^3/6 + g0 T^4/24)
   Vector3d velocity;  ///< its derivative
-  Fall(const NodeState& x0, const EarthModel& earth, double T) {
+  Fall(const state::NodeState& x0, const EarthModel& earth, double T) {
     const Vector3d& w = earth.omega_ie_w;
     const Vector3d& v0 = x0.v_w_b;
     g0 = earth.gravity(x0.p_w_b);
@@ -85,11 +86,11 @@ struct Terms {
   Vector3d p_seen;     ///< R0^T (s(T) - way)
   Vector3d v_seen;     ///< R0^T (s'(T) - velocity)
   Quaterniond q_seen;  ///< q0^-1 Exp(w T) q1
-  NodeVector r;
+  state::NodeVector r;
 };
 
-Terms evaluate(const NodeState& x0, const NodeState& x1, const MotionDeltas& pre,
-               const EarthModel& earth, const ImuScale& scale) {
+Terms evaluate(const state::NodeState& x0, const state::NodeState& x1, const MotionDeltas& pre,
+               const EarthModel& earth, const state::ImuScale& scale) {
   const Vector3d& w = earth.omega_ie_w;
   const Quaterniond earth_turn = so3::exp(w * pre.dt);
   const Matrix3d R0 = x0.q_w_b.toRotationMatrix();
@@ -102,12 +103,12 @@ Terms evaluate(const NodeState& x0, const NodeState& x1, const MotionDeltas& pre
   t.v_seen = t.turn * (x1.v_w_b + w.cross(moved)) - t.R0t * t.fall.velocity;
   t.q_seen = x0.q_w_b.conjugate() * earth_turn * x1.q_w_b;
 
-  part(t.r, position) = t.p_seen - t.R0t * (t.fall.gradient * (R0 * pre.iidp)) - t.z.dp;
-  part(t.r, velocity) = t.v_seen - t.R0t * (t.fall.gradient * (R0 * pre.idp)) - t.z.dv;
-  part(t.r, attitude) = so3::log(t.z.dq.conjugate() * t.q_seen);
-  const ImuBias expected = expected_bias(x0.bias, pre);
-  part(t.r, gyro_bias) = x1.bias.gyro - expected.gyro;
-  part(t.r, accel_bias) = x1.bias.accel - expected.accel;
+  state::part(t.r, position) = t.p_seen - t.R0t * (t.fall.gradient * (R0 * pre.iidp)) - t.z.dp;
+  state::part(t.r, velocity) = t.v_seen - t.R0t * (t.fall.gradient * (R0 * pre.idp)) - t.z.dv;
+  state::part(t.r, attitude) = so3::log(t.z.dq.conjugate() * t.q_seen);
+  const state::ImuBias expected = expected_bias(x0.bias, pre);
+  state::part(t.r, gyro_bias) = x1.bias.gyro - expected.gyro;
+  state::part(t.r, accel_bias) = x1.bias.accel - expected.accel;
   return t;
 }
 
@@ -139,64 +140,68 @@ struct AttitudeJacobians {
 };
 
 AttitudeJacobians attitude_jacobians(const Terms& t) {
-  const Vector3d r_q = part(t.r, attitude);
+  const Vector3d r_q = state::part(t.r, attitude);
   const Matrix3d Jr_inverse = so3::right_jacobian_inverse(r_q);
   return {Jr_inverse, -Jr_inverse * so3::exp(r_q).toRotationMatrix().transpose() *
                           so3::right_jacobian(t.z.dq_shift)};
 }
 
-NodeMatrix jacobian_x0(const Terms& t, const AttitudeJacobians& r_q, const MotionDeltas& pre,
-                       const EarthModel& earth) {
+state::NodeMatrix jacobian_x0(const Terms& t, const AttitudeJacobians& r_q, const MotionDeltas& pre,
+                              const EarthModel& earth) {
   const double T = pre.dt;
   const Matrix3d turn_W = t.turn * so3::skew(earth.omega_ie_w);
   const Matrix3d R0t_G = t.R0t * t.fall.gradient;
   const Matrix3d gradient_b = R0t_G * t.R0t.transpose();
   const FallByPosition fall = fall_by_position(t.fall, earth, T);
-  NodeMatrix J = NodeMatrix::Zero();
+  state::NodeMatrix J = state::NodeMatrix::Zero();
 
-  part(J, position, position) = -t.turn - t.R0t * fall.way;
-  part(J, position, velocity) = -T * t.R0t - T * T * T / 6 * R0t_G;
-  part(J, position, attitude) = so3::skew(t.p_seen) - conjugation_jacobian(gradient_b, pre.iidp);
-  part(J, position, gyro_bias) = -pre.by_gyro_bias.dp;
-  part(J, position, accel_bias) = -pre.by_accel_bias.dp;
+  state::part(J, position, position) = -t.turn - t.R0t * fall.way;
+  state::part(J, position, velocity) = -T * t.R0t - T * T * T / 6 * R0t_G;
+  state::part(J, position, attitude) =
+      so3::skew(t.p_seen) - conjugation_jacobian(gradient_b, pre.iidp);
+  state::part(J, position, gyro_bias) = -pre.by_gyro_bias.dp;
+  state::part(J, position, accel_bias) = -pre.by_accel_bias.dp;
 
-  part(J, velocity, position) = -turn_W - t.R0t * fall.velocity;
-  part(J, velocity, velocity) = -t.R0t - T * T / 2 * R0t_G;
-  part(J, velocity, attitude) = so3::skew(t.v_seen) - conjugation_jacobian(gradient_b, pre.idp);
-  part(J, velocity, gyro_bias) = -pre.by_gyro_bias.dv;
-  part(J, velocity, accel_bias) = -pre.by_accel_bias.dv;
+  state::part(J, velocity, position) = -turn_W - t.R0t * fall.velocity;
+  state::part(J, velocity, velocity) = -t.R0t - T * T / 2 * R0t_G;
+  state::part(J, velocity, attitude) =
+      so3::skew(t.v_seen) - conjugation_jacobian(gradient_b, pre.idp);
+  state::part(J, velocity, gyro_bias) = -pre.by_gyro_bias.dv;
+  state::part(J, velocity, accel_bias) = -pre.by_accel_bias.dv;
 
-  part(J, attitude, attitude) = -r_q.by_x1 * t.q_seen.toRotationMatrix().transpose();
-  part(J, attitude, gyro_bias) = r_q.by_shift * pre.by_gyro_bias.dq;
+  state::part(J, attitude, attitude) = -r_q.by_x1 * t.q_seen.toRotationMatrix().transpose();
+  state::part(J, attitude, gyro_bias) = r_q.by_shift * pre.by_gyro_bias.dq;
 
-  part(J, gyro_bias, gyro_bias) = -pre.gyro_bias_decay * Matrix3d::Identity();
-  part(J, accel_bias, accel_bias) = -pre.accel_bias_decay * Matrix3d::Identity();
+  state::part(J, gyro_bias, gyro_bias) = -pre.gyro_bias_decay * Matrix3d::Identity();
+  state::part(J, accel_bias, accel_bias) = -pre.accel_bias_decay * Matrix3d::Identity();
   return J;
 }
 
-NodeMatrix jacobian_x1(const Terms& t, const AttitudeJacobians& r_q, const EarthModel& earth) {
-  NodeMatrix J = NodeMatrix::Zero();
-  part(J, position, position) = t.turn;
-  part(J, velocity, position) = t.turn * so3::skew(earth.omega_ie_w);
-  part(J, velocity, velocity) = t.turn;
-  part(J, attitude, attitude) = r_q.by_x1;
-  part(J, gyro_bias, gyro_bias) = Matrix3d::Identity();
-  part(J, accel_bias, accel_bias) = Matrix3d::Identity();
+state::NodeMatrix jacobian_x1(const Terms& t, const AttitudeJacobians& r_q,
+                              const EarthModel& earth) {
+  state::NodeMatrix J = state::NodeMatrix::Zero();
+  state::part(J, position, position) = t.turn;
+  state::part(J, velocity, position) = t.turn * so3::skew(earth.omega_ie_w);
+  state::part(J, velocity, velocity) = t.turn;
+  state::part(J, attitude, attitude) = r_q.by_x1;
+  state::part(J, gyro_bias, gyro_bias) = Matrix3d::Identity();
+  state::part(J, accel_bias, accel_bias) = Matrix3d::Identity();
   return J;
 }
 
 NodeByAxis jacobian_of(const DeltaJacobian& change, const AttitudeJacobians& r_q) {
   NodeByAxis J = NodeByAxis::Zero();
-  rows_of(J, position) = -change.dp;
-  rows_of(J, velocity) = -change.dv;
-  rows_of(J, attitude) = r_q.by_shift * change.dq;
+  state::rows_of(J, position) = -change.dp;
+  state::rows_of(J, velocity) = -change.dv;
+  state::rows_of(J, attitude) = r_q.by_shift * change.dq;
   return J;
 }
 
 }  // namespace
 
-MotionResidual motion_residual(const NodeState& x0, const NodeState& x1, const MotionDeltas& pre,
-                               const EarthModel& earth, const ImuScale& scale) {
+MotionResidual motion_residual(const state::NodeState& x0, const state::NodeState& x1,
+                               const MotionDeltas& pre, const EarthModel& earth,
+                               const state::ImuScale& scale) {
   const Terms t = evaluate(x0, x1, pre, earth, scale);
   const AttitudeJacobians r_q = attitude_jacobians(t);
   MotionResidual m{t.r, jacobian_x0(t, r_q, pre, earth), jacobian_x1(t, r_q, earth)};
@@ -207,22 +212,23 @@ MotionResidual motion_residual(const NodeState& x0, const NodeState& x1, const M
   return m;
 }
 
-NodeVector motion_residual_value(const NodeState& x0, const NodeState& x1, const MotionDeltas& pre,
-                                 const EarthModel& earth, const ImuScale& scale) {
+state::NodeVector motion_residual_value(const state::NodeState& x0, const state::NodeState& x1,
+                                        const MotionDeltas& pre, const EarthModel& earth,
+                                        const state::ImuScale& scale) {
   return evaluate(x0, x1, pre, earth, scale).r;
 }
 
-NodeBySlow slow_jacobian(const MotionResidual& m, const Layout& layout) {
-  NodeBySlow J = NodeBySlow::Zero(m.r.size(), layout.slow_size());
-  if (const SlowBlock* gyro = layout.find(gyro_scale))
+state::NodeBySlow slow_jacobian(const MotionResidual& m, const state::Layout& layout) {
+  state::NodeBySlow J = state::NodeBySlow::Zero(m.r.size(), layout.slow_size());
+  if (const state::SlowBlock* gyro = layout.find(gyro_scale))
     J.middleCols<3>(gyro->index) = m.J_gyro_scale;
-  if (const SlowBlock* accel = layout.find(accel_scale))
+  if (const state::SlowBlock* accel = layout.find(accel_scale))
     J.middleCols<3>(accel->index) = m.J_accel_scale;
   return J;
 }
 
-NodeState predict(const NodeState& x0, const MotionDeltas& pre, const EarthModel& earth,
-                  const ImuScale& scale) {
+state::NodeState predict(const state::NodeState& x0, const MotionDeltas& pre,
+                         const EarthModel& earth, const state::ImuScale& scale) {
   const Vector3d& w = earth.omega_ie_w;
   const Corrected z = correct(pre, x0.bias, scale);
   const Matrix3d R0 = x0.q_w_b.toRotationMatrix();
@@ -231,7 +237,7 @@ NodeState predict(const NodeState& x0, const MotionDeltas& pre, const EarthModel
   const Vector3d velocity = fall.velocity + R0 * z.dv + fall.gradient * (R0 * pre.idp);
   const Quaterniond back = so3::exp(-w * pre.dt);
 
-  NodeState x1;
+  state::NodeState x1;
   const Vector3d moved = back * way;
   x1.p_w_b = x0.p_w_b + moved;
   x1.v_w_b = back * velocity - w.cross(moved);
@@ -241,19 +247,21 @@ NodeState predict(const NodeState& x0, const MotionDeltas& pre, const EarthModel
 }
 
 /// r(x0, x1, slow) = e to first order, solved for d1: d1 = T (d0, d_slow) + J1^-1 e.
-StateMatrix predict_covariance(const NodeState& x0, const NodeState& x1, const Preintegration& pre,
-                               const EarthModel& earth, const StateMatrix& covariance_x0,
-                               const Layout& layout, const SlowVector& slow) {
+state::StateMatrix predict_covariance(const state::NodeState& x0, const state::NodeState& x1,
+                                      const Preintegration& pre, const EarthModel& earth,
+                                      const state::StateMatrix& covariance_x0,
+                                      const state::Layout& layout, const state::SlowVector& slow) {
   const MotionResidual m = motion_residual(x0, x1, pre, earth, layout.imu_scale(slow));
-  const Eigen::PartialPivLU<NodeMatrix> J1(m.J_x1);  // block lower triangular, invertible blocks
-  NodeByState T(m.r.size(), layout.size());
+  const Eigen::PartialPivLU<state::NodeMatrix> J1(
+      m.J_x1);  // block lower triangular, invertible blocks
+  state::NodeByState T(m.r.size(), layout.size());
   T << J1.solve(-m.J_x0), J1.solve(-slow_jacobian(m, layout));
-  const NodeMatrix B = J1.solve(NodeMatrix::Identity());
-  const NodeByState carried = T * covariance_x0;
-  StateMatrix P = covariance_x0;
-  node_part(P) = carried * T.transpose() + B * pre.covariance * B.transpose();
-  node_by_slow(P) = carried.rightCols(layout.slow_size());
-  slow_by_node(P) = node_by_slow(P).transpose();
+  const state::NodeMatrix B = J1.solve(state::NodeMatrix::Identity());
+  const state::NodeByState carried = T * covariance_x0;
+  state::StateMatrix P = covariance_x0;
+  state::node_part(P) = carried * T.transpose() + B * pre.covariance * B.transpose();
+  state::node_by_slow(P) = carried.rightCols(layout.slow_size());
+  state::slow_by_node(P) = state::node_by_slow(P).transpose();
   return 0.5 * (P + P.transpose());
 }
 

@@ -33,7 +33,7 @@ Matrix3d times_cross(const Matrix3d& M, const Vector3d& v) {
 /// A bias that is constant, or nearly, would leave its rows of the covariance without an inverse.
 /// Here it wanders by 1e-5 of its sigma in an hour: a navigation run learns a bias to 1e-3 of it
 /// and so gains 1e-4 of its variance. Real ones wander by 1e-2 and more.
-double wandering_power(double power, const MarkovBias& bias) {
+double wandering_power(double power, const imu::MarkovBias& bias) {
   constexpr double kLeastWander = 1e-5;
   return std::max(power, kLeastWander * kLeastWander * bias.sigma * bias.sigma / kSecondsPerHour);
 }
@@ -69,12 +69,12 @@ Preintegrator::Blocks::Blocks() {
   for (Matrix3d* block : {&pp, &pv, &pe, &pg, &pa, &vv, &ve, &vg, &va, &ee, &eg}) block->setZero();
 }
 
-Preintegrator::Preintegrator(const ImuNoise& noise, const ImuBias& bias, int64_t t_begin_ns,
-                             const std::optional<ImuIncrement>& previous,
-                             const std::optional<ImuScale>& scale)
+Preintegrator::Preintegrator(const imu::ImuNoise& noise, const state::ImuBias& bias,
+                             int64_t t_begin_ns, const std::optional<ImuIncrement>& previous,
+                             const std::optional<state::ImuScale>& scale)
     : noise_(noise),
-      gyro_bias_power_(wandering_power(noise.gyro_bias_power(), gyro_markov_bias(noise))),
-      accel_bias_power_(wandering_power(noise.accel_bias_power(), accel_markov_bias(noise))),
+      gyro_bias_power_(wandering_power(noise.gyro_bias_power(), imu::gyro_markov_bias(noise))),
+      accel_bias_power_(wandering_power(noise.accel_bias_power(), imu::accel_markov_bias(noise))),
       previous_(previous) {
   m_.t_begin_ns = m_.t_end_ns = t_begin_ns;
   m_.bias = bias;
@@ -101,14 +101,14 @@ void Preintegrator::add(const ImuIncrement& increment) {
   const Motion now = corrected(increment);
   Motion before{Vector3d::Zero(), Vector3d::Zero()};
   if (previous_) {
-    const double weight = previous_increment_scale(previous_->dt(), dt);
+    const double weight = imu::previous_increment_scale(previous_->dt(), dt);
     before = corrected(*previous_);
     before.dtheta *= weight;
     before.dvel *= weight;
   }
-  const Vector3d u = velocity_with_sculling(before.dtheta, before.dvel, now.dtheta, now.dvel);
+  const Vector3d u = imu::velocity_with_sculling(before.dtheta, before.dvel, now.dtheta, now.dvel);
   const Vector3d y = C_ * u;
-  m_.dq = nearly_normalized(m_.dq * so3::exp(rotation_with_coning(before.dtheta, now.dtheta)));
+  m_.dq = nearly_normalized(m_.dq * so3::exp(imu::rotation_with_coning(before.dtheta, now.dtheta)));
   const Matrix3d C_next = m_.dq.toRotationMatrix();
 
   propagate_errors(increment, now, C_next, y);
@@ -155,8 +155,8 @@ void Preintegrator::add_noise(double h, double q_g, double q_a) {
 void Preintegrator::set_bias_decay(double dt) {
   if (dt == bias_decay_dt_) return;
   bias_decay_dt_ = dt;
-  gyro_bias_decay_ = std::exp(-dt / gyro_markov_bias(noise_).tau);
-  accel_bias_decay_ = std::exp(-dt / accel_markov_bias(noise_).tau);
+  gyro_bias_decay_ = std::exp(-dt / imu::gyro_markov_bias(noise_).tau);
+  accel_bias_decay_ = std::exp(-dt / imu::accel_markov_bias(noise_).tau);
 }
 
 /// Phi of one sample, the exact derivative of add():
@@ -234,13 +234,14 @@ void Preintegrator::put_jacobians(MotionDeltas& out) const {
   for (DeltaJacobian* J : {&out.by_accel_bias, &out.by_accel_scale}) times_columns(gain_.accel, *J);
 }
 
-void Preintegrator::put_covariance(NodeMatrix& S) const {
-  using namespace block;
+void Preintegrator::put_covariance(state::NodeMatrix& S) const {
+  using namespace state::block;
   const Matrix3d Ct = C_.transpose();
   const Blocks& s = cov_;
-  const auto put = [&S](const NodeBlock& row, const NodeBlock& column, const Matrix3d& value) {
-    part(S, row, column) = value;
-    part(S, column, row) = value.transpose();
+  const auto put = [&S](const state::NodeBlock& row, const state::NodeBlock& column,
+                        const Matrix3d& value) {
+    state::part(S, row, column) = value;
+    state::part(S, column, row) = value.transpose();
   };
   put(position, velocity, s.pv);
   put(position, attitude, s.pe * C_);
@@ -250,17 +251,17 @@ void Preintegrator::put_covariance(NodeMatrix& S) const {
   put(velocity, gyro_bias, s.vg);
   put(velocity, accel_bias, s.va);
   put(attitude, gyro_bias, Ct * s.eg);
-  part(S, position, position) = s.pp;
-  part(S, velocity, velocity) = s.vv;
-  part(S, attitude, attitude) = Ct * s.ee * C_;
-  part(S, gyro_bias, gyro_bias).diagonal().setConstant(s.gg);
-  part(S, accel_bias, accel_bias).diagonal().setConstant(s.aa);
+  state::part(S, position, position) = s.pp;
+  state::part(S, velocity, velocity) = s.vv;
+  state::part(S, attitude, attitude) = Ct * s.ee * C_;
+  state::part(S, gyro_bias, gyro_bias).diagonal().setConstant(s.gg);
+  state::part(S, accel_bias, accel_bias).diagonal().setConstant(s.aa);
 }
 
 Preintegration Preintegrator::result_with_bias_decay() const {
   Preintegration out = result();
-  out.gyro_bias_decay = std::exp(-out.dt / gyro_markov_bias(noise_).tau);
-  out.accel_bias_decay = std::exp(-out.dt / accel_markov_bias(noise_).tau);
+  out.gyro_bias_decay = std::exp(-out.dt / imu::gyro_markov_bias(noise_).tau);
+  out.accel_bias_decay = std::exp(-out.dt / imu::accel_markov_bias(noise_).tau);
   return out;
 }
 

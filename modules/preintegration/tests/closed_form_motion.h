@@ -16,7 +16,7 @@ namespace foucault::testing {
 
 class ClosedFormMotion {
  public:
-  explicit ClosedFormMotion(const EarthModel& earth, double liveliness = 1)
+  explicit ClosedFormMotion(const preintegration::EarthModel& earth, double liveliness = 1)
       : earth_(earth), live_(liveliness) {}
 
   Eigen::Vector3d p(double t) const {
@@ -54,8 +54,8 @@ class ClosedFormMotion {
     return q(t).conjugate() * (a(t) - earth_.gravity(p(t)) + 2 * earth_.omega_ie_w.cross(v(t)));
   }
 
-  NodeState state(double t) const {
-    NodeState x;
+  state::NodeState state(double t) const {
+    state::NodeState x;
     x.p_w_b = p(t);
     x.v_w_b = v(t);
     x.q_w_b = q(t);
@@ -95,13 +95,14 @@ class ClosedFormMotion {
   double alpha() const { return 0.7 * live_; }
   double gamma() const { return -0.5 * live_; }
 
-  EarthModel earth_;
+  preintegration::EarthModel earth_;
   double live_;
 };
 
 /// What an IMU with these errors makes of increments.
-inline std::vector<ImuIncrement> measured(std::vector<ImuIncrement> increments, const ImuBias& bias,
-                                          const ImuScale& scale) {
+inline std::vector<ImuIncrement> measured(std::vector<ImuIncrement> increments,
+                                          const state::ImuBias& bias,
+                                          const state::ImuScale& scale) {
   for (ImuIncrement& i : increments) {
     i.dtheta_b += scale.gyro.cwiseProduct(i.dtheta_b) + i.dt() * bias.gyro;
     i.dvel_b += scale.accel.cwiseProduct(i.dvel_b) + i.dt() * bias.accel;
@@ -110,18 +111,20 @@ inline std::vector<ImuIncrement> measured(std::vector<ImuIncrement> increments, 
 }
 
 /// Preintegrates all but the first increment, which stands before the interval.
-inline Preintegration preintegrate(const std::vector<ImuIncrement>& increments,
-                                   const ImuNoise& noise = {}, const ImuBias& bias = {},
-                                   const std::optional<ImuScale>& scale = std::nullopt) {
-  Preintegrator integrator(noise, bias, increments[1].t_begin_ns, increments.front(), scale);
+inline preintegration::Preintegration preintegrate(
+    const std::vector<ImuIncrement>& increments, const imu::ImuNoise& noise = {},
+    const state::ImuBias& bias = {}, const std::optional<state::ImuScale>& scale = std::nullopt) {
+  preintegration::Preintegrator integrator(noise, bias, increments[1].t_begin_ns,
+                                           increments.front(), scale);
   for (std::size_t i = 1; i < increments.size(); ++i) integrator.add(increments[i]);
   return integrator.result();
 }
 
-inline EarthModel wuhan_earth() {
-  return earth_model(PreintegrationModel::refined,
-                     LocalFrame(Geodetic{30.45 * kDegree, 114.47 * kDegree, 20}),
-                     Eigen::Vector3d::Zero());
+inline preintegration::EarthModel wuhan_earth() {
+  return preintegration::earth_model(
+      preintegration::PreintegrationModel::refined,
+      geodesy::LocalFrame(Geodetic{30.45 * kDegree, 114.47 * kDegree, 20}),
+      Eigen::Vector3d::Zero());
 }
 
 }  // namespace foucault::testing

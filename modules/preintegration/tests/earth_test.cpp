@@ -7,7 +7,7 @@
 namespace foucault::preintegration {
 namespace {
 
-const LocalFrame kFrame(Geodetic{48 * kDegree, 9 * kDegree, 300});
+const geodesy::LocalFrame kFrame(Geodetic{48 * kDegree, 9 * kDegree, 300});
 const Eigen::Vector3d kAway(20e3, -30e3, -500);
 
 TEST(EarthModel, RefinedHasTheGravityOfTheOriginEverywhere) {

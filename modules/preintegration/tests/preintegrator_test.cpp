@@ -19,11 +19,11 @@ using testing::ClosedFormMotion;
 using testing::DensePreintegrator;
 using testing::preintegrate;
 using testing::wuhan_earth;
-using namespace block;
+using namespace state::block;
 
 /// Noise with every part of comparable effect over a second, so that no block hides.
-ImuNoise loud_noise() {
-  ImuNoise noise;
+imu::ImuNoise loud_noise() {
+  imu::ImuNoise noise;
   noise.gyro_noise_density = 2e-3;
   noise.accel_noise_density = 3e-2;
   noise.gyro_bias_sigma = 4e-3;
@@ -33,15 +33,15 @@ ImuNoise loud_noise() {
 }
 
 /// |A - B| with every entry in units of B's own sigmas.
-double normalized_difference(const NodeMatrix& A, const NodeMatrix& B) {
-  const NodeVector s = B.diagonal().cwiseSqrt().cwiseInverse();
+double normalized_difference(const state::NodeMatrix& A, const state::NodeMatrix& B) {
+  const state::NodeVector s = B.diagonal().cwiseSqrt().cwiseInverse();
   return (s.asDiagonal() * (A - B) * s.asDiagonal()).cwiseAbs().maxCoeff();
 }
 
 TEST(Preintegrator, StructuredFormEqualsDenseProducts) {
   const ClosedFormMotion motion(wuhan_earth());
   const std::vector<ImuIncrement> increments = motion.increments(3, 4, 200);
-  const ImuBias bias{{0.01, -0.02, 0.015}, {0.1, 0.05, -0.2}};
+  const state::ImuBias bias{{0.01, -0.02, 0.015}, {0.1, 0.05, -0.2}};
   DensePreintegrator products(loud_noise(), bias, increments.front());
   for (std::size_t i = 1; i < increments.size(); ++i) products.add(increments[i]);
   const Preintegration dense = products.result();
@@ -63,33 +63,35 @@ TEST(Preintegrator, StructuredFormEqualsDenseProducts) {
 
 TEST(Preintegrator, CovarianceApproachesVanLoan) {
   const ClosedFormMotion motion(wuhan_earth());
-  const ImuNoise noise = loud_noise();
+  const imu::ImuNoise noise = loud_noise();
   // Van Loan on a fine grid, rates constant within 1 ms.
-  NodeMatrix exact = NodeMatrix::Zero();
+  state::NodeMatrix exact = state::NodeMatrix::Zero();
   for (int k = 0; k < 1000; ++k) {
     const double t = 3 + (k + 0.5) * 1e-3;
-    NodeMatrix F = NodeMatrix::Zero();
+    state::NodeMatrix F = state::NodeMatrix::Zero();
     const Matrix3d C = (motion.q(3).conjugate() * motion.q(t)).toRotationMatrix();
-    part(F, position, velocity).setIdentity();
-    part(F, velocity, attitude) = -C * so3::skew(motion.specific_force_b(t));
-    part(F, velocity, accel_bias) = -C;
-    part(F, attitude, attitude) = -so3::skew(motion.omega_ib_b(t));
-    part(F, attitude, gyro_bias) = -Matrix3d::Identity();
-    part(F, gyro_bias, gyro_bias) = -Matrix3d::Identity() / noise.bias_tau;
-    part(F, accel_bias, accel_bias) = -Matrix3d::Identity() / noise.bias_tau;
-    NodeVector W = NodeVector::Zero();
-    part(W, velocity).setConstant(std::pow(noise.accel_noise_density, 2));
-    part(W, attitude).setConstant(std::pow(noise.gyro_noise_density, 2));
-    part(W, gyro_bias).setConstant(noise.gyro_bias_power());
-    part(W, accel_bias).setConstant(noise.accel_bias_power());
-    using Twice = Eigen::Matrix<double, 2 * kNodeSize, 2 * kNodeSize>;
+    state::part(F, position, velocity).setIdentity();
+    state::part(F, velocity, attitude) = -C * so3::skew(motion.specific_force_b(t));
+    state::part(F, velocity, accel_bias) = -C;
+    state::part(F, attitude, attitude) = -so3::skew(motion.omega_ib_b(t));
+    state::part(F, attitude, gyro_bias) = -Matrix3d::Identity();
+    state::part(F, gyro_bias, gyro_bias) = -Matrix3d::Identity() / noise.bias_tau;
+    state::part(F, accel_bias, accel_bias) = -Matrix3d::Identity() / noise.bias_tau;
+    state::NodeVector W = state::NodeVector::Zero();
+    state::part(W, velocity).setConstant(std::pow(noise.accel_noise_density, 2));
+    state::part(W, attitude).setConstant(std::pow(noise.gyro_noise_density, 2));
+    state::part(W, gyro_bias).setConstant(noise.gyro_bias_power());
+    state::part(W, accel_bias).setConstant(noise.accel_bias_power());
+    using Twice = Eigen::Matrix<double, 2 * state::kNodeSize, 2 * state::kNodeSize>;
     Twice M = Twice::Zero();
-    M.topLeftCorner<kNodeSize, kNodeSize>() = -F;
-    M.topRightCorner<kNodeSize, kNodeSize>() = W.asDiagonal();
-    M.bottomRightCorner<kNodeSize, kNodeSize>() = F.transpose();
+    M.topLeftCorner<state::kNodeSize, state::kNodeSize>() = -F;
+    M.topRightCorner<state::kNodeSize, state::kNodeSize>() = W.asDiagonal();
+    M.bottomRightCorner<state::kNodeSize, state::kNodeSize>() = F.transpose();
     const Twice E = (M * 1e-3).exp();
-    const NodeMatrix phi = E.bottomRightCorner<kNodeSize, kNodeSize>().transpose();
-    exact = phi * exact * phi.transpose() + phi * E.topRightCorner<kNodeSize, kNodeSize>();
+    const state::NodeMatrix phi =
+        E.bottomRightCorner<state::kNodeSize, state::kNodeSize>().transpose();
+    exact = phi * exact * phi.transpose() +
+            phi * E.topRightCorner<state::kNodeSize, state::kNodeSize>();
   }
   const double at_100 =
       normalized_difference(preintegrate(motion.increments(3, 4, 100), noise).covariance, exact);
@@ -101,7 +103,7 @@ TEST(Preintegrator, CovarianceApproachesVanLoan) {
 
 TEST(Preintegrator, CovarianceMatchesMonteCarlo) {
   const ClosedFormMotion motion(wuhan_earth());
-  const ImuNoise noise = loud_noise();
+  const imu::ImuNoise noise = loud_noise();
   const std::vector<ImuIncrement> clean = motion.increments(3, 4, 100);
   const Preintegration truth = preintegrate(clean, noise);
   std::mt19937 rng{42};
@@ -109,7 +111,7 @@ TEST(Preintegrator, CovarianceMatchesMonteCarlo) {
   const auto draw = [&] { return Vector3d(normal(rng), normal(rng), normal(rng)); };
 
   constexpr int kRuns = 4000;
-  NodeMatrix sample = NodeMatrix::Zero();
+  state::NodeMatrix sample = state::NodeMatrix::Zero();
   for (int run = 0; run < kRuns; ++run) {
     std::vector<ImuIncrement> noisy = clean;
     Vector3d bg = Vector3d::Zero(), ba = Vector3d::Zero();
@@ -125,7 +127,7 @@ TEST(Preintegrator, CovarianceMatchesMonteCarlo) {
           noise.accel_noise_density * std::sqrt(dt) * draw() + 0.5 * dt * (ba_before + ba);
     }
     const Preintegration measured = preintegrate(noisy, noise);
-    NodeVector error;  // true minus measured
+    state::NodeVector error;  // true minus measured
     error << truth.dp - measured.dp, truth.dv - measured.dv,
         so3::log(measured.dq.conjugate() * truth.dq), bg, ba;
     sample += error * error.transpose() / kRuns;
@@ -137,16 +139,17 @@ TEST(Preintegrator, CovarianceMatchesMonteCarlo) {
 
 TEST(Preintegrator, ASingleSampleHasAPositiveCovariance) {
   const ClosedFormMotion motion(wuhan_earth());
-  const NodeMatrix P = preintegrate(motion.increments(3, 3.005, 200), loud_noise()).covariance;
-  EXPECT_EQ(Eigen::LLT<NodeMatrix>(P).info(), Eigen::Success);
+  const state::NodeMatrix P =
+      preintegrate(motion.increments(3, 3.005, 200), loud_noise()).covariance;
+  EXPECT_EQ(Eigen::LLT<state::NodeMatrix>(P).info(), Eigen::Success);
   // White noise over one interval: dt^3/2 by the trapezoid, dt^3/3 exactly.
-  EXPECT_NEAR(part(P, position, position)(0, 0), 9e-4 * std::pow(0.005, 3) / 2, 1e-12);
+  EXPECT_NEAR(state::part(P, position, position)(0, 0), 9e-4 * std::pow(0.005, 3) / 2, 1e-12);
 }
 
 /// Errors of the sensors at which to integrate.
 struct SensorErrors {
-  ImuBias bias;
-  std::optional<ImuScale> scale;
+  state::ImuBias bias;
+  std::optional<state::ImuScale> scale;
 };
 
 Preintegration preintegrate_at(const std::vector<ImuIncrement>& increments,
@@ -154,9 +157,9 @@ Preintegration preintegrate_at(const std::vector<ImuIncrement>& increments,
   return preintegrate(increments, {}, at.bias, at.scale);
 }
 
-const ImuBias kBias{{0.01, -0.02, 0.015}, {0.1, 0.05, -0.2}};
+const state::ImuBias kBias{{0.01, -0.02, 0.015}, {0.1, 0.05, -0.2}};
 /// Large, so that 1 / (1 + scale) in a column shows.
-const ImuScale kScale{{0.02, -0.03, 0.01}, {-0.01, 0.02, 0.03}};
+const state::ImuScale kScale{{0.02, -0.03, 0.01}, {-0.01, 0.02, 0.03}};
 
 /// Difference quotient of the deltas by what `shifted` makes of a step.
 template <class Shifted>
@@ -200,7 +203,7 @@ TEST(Preintegrator, BiasJacobiansAreDerivatives) {
 TEST(Preintegrator, ScaleJacobiansAreDerivatives) {
   const std::vector<ImuIncrement> increments =
       ClosedFormMotion(wuhan_earth()).increments(3, 4, 200);
-  for (const ImuScale& scale : {ImuScale{}, kScale}) {
+  for (const state::ImuScale& scale : {state::ImuScale{}, kScale}) {
     const SensorErrors at{kBias, scale};
     const Preintegration pre = preintegrate_at(increments, at);
     expect_derivatives(pre.by_gyro_scale, 5, [&](const Vector3d& d) {
@@ -218,7 +221,7 @@ TEST(Preintegrator, ScaleJacobiansAreDerivatives) {
 
 TEST(Preintegrator, TheTrueScaleGivesBackTheDeltas) {
   const std::vector<ImuIncrement> ideal = ClosedFormMotion(wuhan_earth()).increments(3, 4, 200);
-  const ImuScale scale{{1e-3, -1e-3, 1e-3}, {-1e-3, 1e-3, -1e-3}};
+  const state::ImuScale scale{{1e-3, -1e-3, 1e-3}, {-1e-3, 1e-3, -1e-3}};
   const std::vector<ImuIncrement> recorded = testing::measured(ideal, kBias, scale);
   const Preintegration truth = preintegrate(ideal);
   const Preintegration pre = preintegrate(recorded, {}, kBias, scale);
@@ -238,7 +241,7 @@ TEST(Preintegrator, AScaleOfZeroChangesNothingAndNoneHasNoJacobians) {
   const std::vector<ImuIncrement> increments =
       ClosedFormMotion(wuhan_earth()).increments(3, 4, 200);
   const Preintegration none = preintegrate(increments, loud_noise(), kBias);
-  const Preintegration zero = preintegrate(increments, loud_noise(), kBias, ImuScale{});
+  const Preintegration zero = preintegrate(increments, loud_noise(), kBias, state::ImuScale{});
   EXPECT_FALSE(none.scale);
   EXPECT_TRUE(zero.scale);
   EXPECT_EQ(zero.dp, none.dp);
@@ -254,7 +257,7 @@ TEST(Preintegrator, SplittingAnIncrementChangesLittle) {
   std::vector<ImuIncrement> increments = motion.increments(3, 4, 200);
   const Preintegration whole = preintegrate(increments);
   const std::pair<ImuIncrement, ImuIncrement> parts =
-      split(increments[77], increments[77].t_begin_ns + 1'234'567);
+      imu::split(increments[77], increments[77].t_begin_ns + 1'234'567);
   increments[77] = parts.first;
   increments.insert(increments.begin() + 78, parts.second);
   const Preintegration cut = preintegrate(increments);
@@ -270,14 +273,14 @@ TEST(Preintegrator, ExtraNoiseOfABridgeAddsToTheSensors) {
   gap.t_end_ns = 500'000'000;
   gap.extra_gyro_noise_density = 0.03;
   gap.extra_accel_noise_density = 0.4;
-  ImuNoise noise;
+  imu::ImuNoise noise;
   noise.gyro_noise_density = 0.04;
   noise.accel_noise_density = 0.3;
   Preintegrator integrator(noise, {}, 0);
   integrator.add(gap);
-  const NodeMatrix P = integrator.result().covariance;
-  EXPECT_NEAR(part(P, attitude, attitude)(0, 0), 0.05 * 0.05 * 0.5, 1e-15);
-  EXPECT_NEAR(part(P, velocity, velocity)(0, 0), 0.5 * 0.5 * 0.5, 1e-15);
+  const state::NodeMatrix P = integrator.result().covariance;
+  EXPECT_NEAR(state::part(P, attitude, attitude)(0, 0), 0.05 * 0.05 * 0.5, 1e-15);
+  EXPECT_NEAR(state::part(P, velocity, velocity)(0, 0), 0.5 * 0.5 * 0.5, 1e-15);
 }
 
 TEST(Preintegrator, RefusesHolesAndEmptyIncrements) {

@@ -64,7 +64,7 @@ class Injection {
 
   static GnssFix moved(const GnssFix& fix, const Eigen::Vector3d& error_n) {
     GnssFix out = fix;
-    out.antenna = LocalFrame(fix.antenna).to_geodetic(error_n);
+    out.antenna = geodesy::LocalFrame(fix.antenna).to_geodetic(error_n);
     return out;
   }
 
@@ -263,7 +263,7 @@ void interpolate(const Fault& fault, int64_t start_ns, Items& items) {
   }
 }
 
-Items all_of(Source& source) {
+Items all_of(state::Source& source) {
   Items items;
   while (const std::optional<Measurement> measurement = source.next()) {
     items.push_back({*measurement, stamp(*measurement)});
@@ -284,7 +284,7 @@ void sort(Items& items) {
 
 }  // namespace
 
-FaultySource::FaultySource(std::unique_ptr<Source> source, const std::vector<Fault>& faults,
+FaultySource::FaultySource(std::unique_ptr<state::Source> source, const std::vector<Fault>& faults,
                            int64_t seed)
     : source_(std::move(source)) {
   Items items = all_of(*source_);

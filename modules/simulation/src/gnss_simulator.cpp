@@ -8,13 +8,14 @@ namespace {
 /// Velocity of the antenna relative to the Earth, in the NED of the IMU [m/s].
 Eigen::Vector3d antenna_velocity_n(const Motion& motion, const Eigen::Vector3d& p_v_a) {
   const Eigen::Vector3d omega_ie_v =
-      motion.q_n_v.conjugate() * wgs84::earth_rate_n(motion.position.latitude);
+      motion.q_n_v.conjugate() * geodesy::wgs84::earth_rate_n(motion.position.latitude);
   const Eigen::Vector3d omega_ev_v = motion.omega_iv_v - omega_ie_v;
   return motion.velocity_n + motion.q_n_v * omega_ev_v.cross(p_v_a);
 }
 
 Eigen::Vector3d antenna_position_e(const Motion& motion, const Eigen::Vector3d& p_v_a) {
-  const Eigen::Matrix3d R_e_n = wgs84::R_e_n(motion.position.latitude, motion.position.longitude);
+  const Eigen::Matrix3d R_e_n =
+      geodesy::wgs84::R_e_n(motion.position.latitude, motion.position.longitude);
   return motion.p_e + R_e_n * (motion.q_n_v * p_v_a);
 }
 
@@ -38,12 +39,13 @@ GnssFix GnssSimulator::measure(const Motion& motion, int64_t t_ns, double t) {
   const double velocity_sigma = factor * options_.gnss_velocity_sigma_m_s;
   const Eigen::Vector3d position_noise_n = noise * sigma.cwiseProduct(position_draws_.normal3());
   const Eigen::Vector3d velocity_noise_n = noise * velocity_sigma * velocity_draws_.normal3();
-  const Eigen::Matrix3d R_e_n = wgs84::R_e_n(motion.position.latitude, motion.position.longitude);
+  const Eigen::Matrix3d R_e_n =
+      geodesy::wgs84::R_e_n(motion.position.latitude, motion.position.longitude);
 
   GnssFix fix;
   fix.t_ns = t_ns;
-  fix.antenna = wgs84::ecef_to_geodetic(antenna_position_e(motion, options_.lever_arm_m) +
-                                        R_e_n * position_noise_n);
+  fix.antenna = geodesy::wgs84::ecef_to_geodetic(antenna_position_e(motion, options_.lever_arm_m) +
+                                                 R_e_n * position_noise_n);
   fix.position_covariance = sigma.cwiseAbs2().asDiagonal();
   fix.quality = degraded(t) ? FixQuality::float_rtk : FixQuality::fixed_rtk;
   fix.p_b_a = p_b_a_;

@@ -51,7 +51,7 @@ ImuIncrement exact_increment(const Trajectory& trajectory, const Eigen::Quaterni
   return increment;
 }
 
-ImuSample interval_mean_sample(const ImuIncrement& increment) {
+imu::ImuSample interval_mean_sample(const ImuIncrement& increment) {
   const double dt = increment.dt();
   return {increment.t_end_ns, increment.dtheta_b / dt, increment.dvel_b / dt};
 }
@@ -75,7 +75,7 @@ Eigen::Vector3d ImuErrors::Triad::apply(const Eigen::Vector3d& exact, double dt,
   return exact + scale.cwiseProduct(exact) + (before + bias()) * (dt / 2) + white;
 }
 
-ImuErrors::ImuErrors(const ImuNoise& noise, double scale_sigma, int64_t seed)
+ImuErrors::ImuErrors(const imu::ImuNoise& noise, double scale_sigma, int64_t seed)
     : tau_(noise.bias_tau),
       scale_draws_(seed, RandomStream::scale_factor),
       gyro_(noise.gyro_noise_density, noise.gyro_bias_sigma, noise.gyro_turn_on_sigma, scale_sigma,
@@ -93,6 +93,6 @@ ImuIncrement ImuErrors::apply(const ImuIncrement& exact) {
   return measured;
 }
 
-ImuBias ImuErrors::bias() const { return {gyro_.bias(), accel_.bias()}; }
+state::ImuBias ImuErrors::bias() const { return {gyro_.bias(), accel_.bias()}; }
 
 }  // namespace foucault::simulation

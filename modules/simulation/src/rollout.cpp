@@ -31,8 +31,8 @@ double SineSum::slope(double x) const {
 }
 
 void move_along_earth(Geodetic& position, double north, double east) {
-  const double north_radius = wgs84::meridian_radius(position.latitude) + position.height;
-  const double east_radius = wgs84::transverse_radius(position.latitude) + position.height;
+  const double north_radius = geodesy::wgs84::meridian_radius(position.latitude) + position.height;
+  const double east_radius = geodesy::wgs84::transverse_radius(position.latitude) + position.height;
   position.longitude += east / (east_radius * std::cos(position.latitude));
   position.latitude += north / north_radius;
 }

@@ -75,7 +75,7 @@ Vibration vibration_of(const ScenarioOptions& options) {
 Trajectory follow(Rollout& rollout, const ScenarioOptions& options, double knot_interval) {
   const std::size_t count = QuinticSpline::controls_for(options.duration_s, knot_interval);
   const int steps = static_cast<int>(std::lround(knot_interval / kRolloutStep));
-  const LocalFrame frame(options.start_position());
+  const geodesy::LocalFrame frame(options.start_position());
   std::vector<Eigen::Vector3d> positions, angles;
   positions.reserve(count);
   angles.reserve(count);

@@ -49,7 +49,7 @@ std::optional<int64_t> SimulatedSource::Stream::next_ns(int64_t end_ns) const {
   return t_ns <= end_ns ? std::optional<int64_t>(t_ns) : std::nullopt;
 }
 
-SimulatedSource::SimulatedSource(const ScenarioOptions& options, const ImuNoise& noise)
+SimulatedSource::SimulatedSource(const ScenarioOptions& options, const imu::ImuNoise& noise)
     : options_(checked(options)),
       start_ns_(rounded_start(options)),
       end_ns_(start_ns_ + nanoseconds(options.duration_s)),
@@ -118,9 +118,9 @@ bool SimulatedSource::in_gap(const ImuIncrement& increment) const {
       [&](double gap) { return begin >= gap && begin < gap + options_.imu_gap_length_s; });
 }
 
-Epoch SimulatedSource::truth(int64_t t_ns) const {
+state::Epoch SimulatedSource::truth(int64_t t_ns) const {
   const Motion motion = motion_at(t_ns);
-  Epoch epoch;
+  state::Epoch epoch;
   epoch.t_ns = t_ns;
   epoch.position = motion.position;
   epoch.velocity_n = motion.velocity_n;

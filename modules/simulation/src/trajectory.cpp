@@ -20,8 +20,8 @@ void add_sine(QuinticSpline::Sample& sample, double amplitude, double frequency_
 
 /// Rate of n relative to e, in n [rad/s] (transport rate).
 Eigen::Vector3d transport_rate_n(const Geodetic& position, const Eigen::Vector3d& velocity_n) {
-  const double north_radius = wgs84::meridian_radius(position.latitude) + position.height;
-  const double east_radius = wgs84::transverse_radius(position.latitude) + position.height;
+  const double north_radius = geodesy::wgs84::meridian_radius(position.latitude) + position.height;
+  const double east_radius = geodesy::wgs84::transverse_radius(position.latitude) + position.height;
   const double about_north = velocity_n.y() / east_radius;
   return {about_north, -velocity_n.x() / north_radius, -about_north * std::tan(position.latitude)};
 }
@@ -49,8 +49,8 @@ struct Attitude {
 
 Trajectory::Trajectory(const Geodetic& origin, QuinticSpline position_w, QuinticSpline euler,
                        const Vibration& vibration)
-    : origin_e_(wgs84::geodetic_to_ecef(origin)),
-      R_e_w_(wgs84::R_e_n(origin.latitude, origin.longitude)),
+    : origin_e_(geodesy::wgs84::geodetic_to_ecef(origin)),
+      R_e_w_(geodesy::wgs84::R_e_n(origin.latitude, origin.longitude)),
       position_w_(std::move(position_w)),
       euler_(std::move(euler)),
       vibration_(vibration) {}
@@ -78,15 +78,16 @@ Motion Trajectory::at(double t) const {
 
   Motion motion;
   motion.p_e = origin_e_ + R_e_w_ * position.value;
-  motion.position = wgs84::ecef_to_geodetic(motion.p_e);
+  motion.position = geodesy::wgs84::ecef_to_geodetic(motion.p_e);
   const Geodetic& place = motion.position;
-  const Eigen::Matrix3d R_n_w = wgs84::R_e_n(place.latitude, place.longitude).transpose() * R_e_w_;
+  const Eigen::Matrix3d R_n_w =
+      geodesy::wgs84::R_e_n(place.latitude, place.longitude).transpose() * R_e_w_;
   motion.velocity_n = R_n_w * position.rate;
   motion.q_n_v = Eigen::Quaterniond(attitude.R_n_v);
 
-  const Eigen::Vector3d omega_ie_n = wgs84::earth_rate_n(place.latitude);
+  const Eigen::Vector3d omega_ie_n = geodesy::wgs84::earth_rate_n(place.latitude);
   const Eigen::Vector3d omega_en_n = transport_rate_n(place, motion.velocity_n);
-  const Eigen::Vector3d g_n(0, 0, wgs84::normal_gravity(place.latitude, place.height));
+  const Eigen::Vector3d g_n(0, 0, geodesy::wgs84::normal_gravity(place.latitude, place.height));
   const Eigen::Vector3d f_n =
       R_n_w * position.acceleration + 2 * omega_ie_n.cross(motion.velocity_n) - g_n;
   motion.omega_iv_v = attitude.R_n_v.transpose() * (omega_ie_n + omega_en_n) + attitude.omega_nv_v;

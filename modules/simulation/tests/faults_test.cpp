@@ -20,8 +20,8 @@ Recording record(const std::vector<Fault>& faults, int64_t seed = 3) {
   ScenarioOptions scenario;
   scenario.duration_s = 100;
   scenario.imu_rate_hz = 100;
-  FaultySource source(std::make_unique<SimulatedSource>(scenario, imu_preset("ADIS16465")), faults,
-                      seed);
+  FaultySource source(std::make_unique<SimulatedSource>(scenario, imu::imu_preset("ADIS16465")),
+                      faults, seed);
   Recording recording;
   while (const std::optional<Measurement> m = source.next()) {
     if (const auto* fix = std::get_if<GnssFix>(&*m)) recording.fixes.push_back(*fix);
@@ -31,7 +31,7 @@ Recording record(const std::vector<Fault>& faults, int64_t seed = 3) {
 }
 
 double offset_m(const GnssFix& a, const GnssFix& b) {
-  return LocalFrame(b.antenna).to_local(a.antenna).norm();
+  return geodesy::LocalFrame(b.antenna).to_local(a.antenna).norm();
 }
 
 TEST(Faults, NoneLeaveTheRecordingAsItIs) {

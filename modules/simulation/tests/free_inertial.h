@@ -15,7 +15,7 @@ namespace foucault::testing {
 
 /// What the navigators know of the Earth; the negative controls take it away.
 struct Earth {
-  Eigen::Vector3d rate_e{0, 0, wgs84::kEarthRate};
+  Eigen::Vector3d rate_e{0, 0, geodesy::wgs84::kEarthRate};
   bool gravity_follows_place =
       true;  ///< false: the gravity vector of the start (no transport rate)
 };
@@ -27,24 +27,25 @@ struct EcefState {
 };
 
 inline Eigen::Matrix3d R_e_n(const Geodetic& place) {
-  return wgs84::R_e_n(place.latitude, place.longitude);
+  return geodesy::wgs84::R_e_n(place.latitude, place.longitude);
 }
 
-inline EcefState ecef_state(const Motion& motion) {
+inline EcefState ecef_state(const simulation::Motion& motion) {
   const Eigen::Matrix3d R = R_e_n(motion.position);
   return {motion.p_e, R * motion.velocity_n, Eigen::Quaterniond(R) * motion.q_n_v};
 }
 
 inline Eigen::Vector3d gravity_e(const Eigen::Vector3d& p_e) {
-  const Geodetic place = wgs84::ecef_to_geodetic(p_e);
-  return R_e_n(place) * Eigen::Vector3d(0, 0, wgs84::normal_gravity(place.latitude, place.height));
+  const Geodetic place = geodesy::wgs84::ecef_to_geodetic(p_e);
+  return R_e_n(place) *
+         Eigen::Vector3d(0, 0, geodesy::wgs84::normal_gravity(place.latitude, place.height));
 }
 
 /// Free-inertial navigation with position as an offset from the start, so that rounding in ECEF
 /// metres (1 nm) does not add up.
 class FreeInertial {
  public:
-  FreeInertial(const Motion& start, const Earth& earth)
+  FreeInertial(const simulation::Motion& start, const Earth& earth)
       : earth_(earth), start_e_(start.p_e), start_gravity_e_(gravity_e(start.p_e)) {
     const EcefState state = ecef_state(start);
     v_ = state.v;
@@ -69,10 +70,10 @@ class RungeKutta : public FreeInertial {
  public:
   using FreeInertial::FreeInertial;
 
-  void step(const Trajectory& trajectory, double t, double dt) {
-    const Motion begin = trajectory.at(t);
-    const Motion middle = trajectory.at(t + dt / 2);
-    const Motion end = trajectory.at(t + dt);
+  void step(const simulation::Trajectory& trajectory, double t, double dt) {
+    const simulation::Motion begin = trajectory.at(t);
+    const simulation::Motion middle = trajectory.at(t + dt / 2);
+    const simulation::Motion end = trajectory.at(t + dt);
     const State y{offset_, v_, q_.coeffs()};
     const State k1 = derivative(y, begin);
     const State k2 = derivative(plus(y, k1, dt / 2), middle);
@@ -96,7 +97,7 @@ class RungeKutta : public FreeInertial {
 
   static Eigen::Quaterniond pure(const Eigen::Vector3d& v) { return {0, v.x(), v.y(), v.z()}; }
 
-  State derivative(const State& y, const Motion& truth) const {
+  State derivative(const State& y, const simulation::Motion& truth) const {
     const Eigen::Quaterniond q(y.q);
     const Eigen::Vector3d acceleration =
         q * truth.f_v + gravity(y.p) - 2 * earth_.rate_e.cross(y.v);
@@ -113,9 +114,9 @@ class Strapdown : public FreeInertial {
   /// Both increments of the same length.
   void step(const ImuIncrement& previous, const ImuIncrement& current) {
     const double dt = current.dt();
-    const Eigen::Vector3d turn = rotation_with_coning(previous.dtheta_b, current.dtheta_b);
-    const Eigen::Vector3d dv_b = velocity_with_sculling(previous.dtheta_b, previous.dvel_b,
-                                                        current.dtheta_b, current.dvel_b);
+    const Eigen::Vector3d turn = imu::rotation_with_coning(previous.dtheta_b, current.dtheta_b);
+    const Eigen::Vector3d dv_b = imu::velocity_with_sculling(previous.dtheta_b, previous.dvel_b,
+                                                             current.dtheta_b, current.dvel_b);
     const Eigen::Quaterniond half_earth = so3::exp(-earth_.rate_e * (dt / 2));
     const Eigen::Vector3d dv_f = half_earth * (q_ * dv_b);
     const Eigen::Vector3d coasting = gravity(offset_) - 2 * earth_.rate_e.cross(v_);
@@ -141,8 +142,8 @@ struct Closure {
   }
 };
 
-inline Closure close_runge_kutta(const Trajectory& trajectory, double begin, double length,
-                                 double dt, const Earth& earth = {}) {
+inline Closure close_runge_kutta(const simulation::Trajectory& trajectory, double begin,
+                                 double length, double dt, const Earth& earth = {}) {
   RungeKutta navigator(trajectory.at(begin), earth);
   Closure closure;
   const int steps = static_cast<int>(length / dt + 0.5);
@@ -153,16 +154,17 @@ inline Closure close_runge_kutta(const Trajectory& trajectory, double begin, dou
   return closure;
 }
 
-inline Closure close_strapdown(const Trajectory& trajectory, double begin, double length,
-                               int64_t dt_ns, const Earth& earth = {}) {
+inline Closure close_strapdown(const simulation::Trajectory& trajectory, double begin,
+                               double length, int64_t dt_ns, const Earth& earth = {}) {
   const int64_t begin_ns = static_cast<int64_t>(begin * 1e9 + 0.5);
   const Eigen::Quaterniond same = Eigen::Quaterniond::Identity();
   Strapdown navigator(trajectory.at(static_cast<double>(begin_ns) * 1e-9), earth);
-  ImuIncrement previous = exact_increment(trajectory, same, 0, begin_ns - dt_ns, begin_ns);
+  ImuIncrement previous =
+      simulation::exact_increment(trajectory, same, 0, begin_ns - dt_ns, begin_ns);
   Closure closure;
   const int64_t end_ns = begin_ns + static_cast<int64_t>(length * 1e9 + 0.5);
   for (int64_t t = begin_ns; t < end_ns; t += dt_ns) {
-    const ImuIncrement current = exact_increment(trajectory, same, 0, t, t + dt_ns);
+    const ImuIncrement current = simulation::exact_increment(trajectory, same, 0, t, t + dt_ns);
     navigator.step(previous, current);
     closure.compare(navigator.state(),
                     ecef_state(trajectory.at(static_cast<double>(t + dt_ns) * 1e-9)));

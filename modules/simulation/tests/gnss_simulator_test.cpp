@@ -25,7 +25,7 @@ TEST(GnssSimulator, AntennaIsOneLeverArmAway) {
   for (double t = 0; t < 200; t += 3.3) {
     const Motion motion = truth.at(t);
     const GnssFix fix = fix_at(truth, options, t);
-    const Eigen::Vector3d arm_n = LocalFrame(motion.position).to_local(fix.antenna);
+    const Eigen::Vector3d arm_n = geodesy::LocalFrame(motion.position).to_local(fix.antenna);
     // Geodetic coordinates and back: a few nm.
     EXPECT_LT((arm_n - motion.q_n_v * options.lever_arm_m).norm(), 2e-8);
     EXPECT_LT((options.q_v_b() * fix.p_b_a - options.lever_arm_m).norm(), 1e-14);
@@ -41,7 +41,7 @@ TEST(GnssSimulator, VelocityIsTheAntennas) {
   const Trajectory truth = make_trajectory(options);
   const double h = 0.01;
   for (double t = 1; t < 200; t += 3.3) {
-    const LocalFrame frame(truth.at(t).position);
+    const geodesy::LocalFrame frame(truth.at(t).position);
     const Eigen::Vector3d before = frame.to_local(fix_at(truth, options, t - h).antenna);
     const Eigen::Vector3d after = frame.to_local(fix_at(truth, options, t + h).antenna);
     const GnssFix fix = fix_at(truth, options, t);
@@ -61,7 +61,7 @@ TEST(GnssSimulator, NoiseIsAsReported) {
   options.gnss_velocity_sigma_m_s = 0.1;
   options.lever_arm_m.setZero();
   const Motion motion = make_trajectory(options).at(5);
-  const LocalFrame frame(motion.position);
+  const geodesy::LocalFrame frame(motion.position);
   GnssSimulator simulator(options);
   Eigen::Vector3d mean = Eigen::Vector3d::Zero(), square = Eigen::Vector3d::Zero();
   double velocity_square = 0;

@@ -27,7 +27,7 @@ ImuIncrement nothing(int64_t t_ns, double dt) {
   return increment;
 }
 
-std::vector<ImuIncrement> run(const ImuNoise& noise, double scale_sigma, int64_t seed,
+std::vector<ImuIncrement> run(const imu::ImuNoise& noise, double scale_sigma, int64_t seed,
                               const ImuIncrement& exact, int count) {
   ImuErrors errors(noise, scale_sigma, seed);
   std::vector<ImuIncrement> result;
@@ -81,7 +81,7 @@ TEST(ExactIncrement, TurnsWithTheMounting) {
 
 TEST(ExactIncrement, SampleTimesLengthIsTheIncrement) {
   const ImuIncrement increment = exact_increment(city(), kSame, 0, 70'000'000'000, 70'005'000'000);
-  const ImuSample sample = interval_mean_sample(increment);
+  const imu::ImuSample sample = interval_mean_sample(increment);
   EXPECT_EQ(sample.t_ns, increment.t_end_ns);
   EXPECT_LT((sample.gyro_b * 0.005 - increment.dtheta_b).norm(), 1e-18);
   EXPECT_LT((sample.accel_b * 0.005 - increment.dvel_b).norm(), 1e-16);
@@ -89,7 +89,7 @@ TEST(ExactIncrement, SampleTimesLengthIsTheIncrement) {
 
 TEST(ImuErrors, NoneLeaveTheIncrementAsItIs) {
   const ImuIncrement exact = exact_increment(city(), kSame, 0, 70'000'000'000, 70'005'000'000);
-  const ImuIncrement measured = run(ImuNoise{}, 0, 1, exact, 1).front();
+  const ImuIncrement measured = run(imu::ImuNoise{}, 0, 1, exact, 1).front();
   EXPECT_EQ(measured.dtheta_b, exact.dtheta_b);
   EXPECT_EQ(measured.dvel_b, exact.dvel_b);
 }
@@ -97,7 +97,7 @@ TEST(ImuErrors, NoneLeaveTheIncrementAsItIs) {
 // Sums of n white increments have variance density^2 n dt, for any n (the -1/2 slope of an Allan
 // plot). With 1000 sums of 3 axes the variance is known to 2.6 %; 10 % is four sigma.
 TEST(ImuErrors, WhiteNoiseHasItsDensityOverAnyTime) {
-  ImuNoise noise;
+  imu::ImuNoise noise;
   noise.gyro_noise_density = 3e-5;
   noise.accel_noise_density = 2e-3;
   const double dt = 0.005;
@@ -120,7 +120,7 @@ TEST(ImuErrors, WhiteNoiseHasItsDensityOverAnyTime) {
 
 // 2000 steady-state starts of 3 axes: the variance is known to 1.8 %, a correlation to 1.3 %.
 TEST(ImuErrors, BiasIsGaussMarkovWhateverTheStep) {
-  ImuNoise noise;
+  imu::ImuNoise noise;
   noise.gyro_bias_sigma = 1e-5;
   noise.accel_bias_sigma = 1e-3;
   noise.bias_tau = 100;
@@ -141,13 +141,13 @@ TEST(ImuErrors, BiasIsGaussMarkovWhateverTheStep) {
 }
 
 TEST(ImuErrors, TurnOnBiasIsConstantWithItsSigma) {
-  ImuNoise noise;
+  imu::ImuNoise noise;
   noise.gyro_turn_on_sigma = 5e-4;
   noise.accel_turn_on_sigma = 1e-2;
   std::vector<Eigen::Vector3d> gyro, accel;
   for (int seed = 0; seed < 2000; ++seed) {
     ImuErrors errors(noise, 0, seed);
-    const ImuBias bias = errors.bias();
+    const state::ImuBias bias = errors.bias();
     errors.apply(nothing(0, 100));
     EXPECT_EQ(errors.bias().gyro, bias.gyro);
     gyro.push_back(bias.gyro);
@@ -158,7 +158,7 @@ TEST(ImuErrors, TurnOnBiasIsConstantWithItsSigma) {
 }
 
 TEST(ImuErrors, RecordedBiasIsTheOneInTheIncrements) {
-  ImuNoise noise;
+  imu::ImuNoise noise;
   noise.gyro_bias_sigma = 1e-5;
   noise.accel_bias_sigma = 1e-3;
   noise.gyro_turn_on_sigma = 5e-4;
@@ -166,9 +166,9 @@ TEST(ImuErrors, RecordedBiasIsTheOneInTheIncrements) {
   noise.bias_tau = 100;
   ImuErrors errors(noise, 0, 3);
   for (int i = 0; i < 100; ++i) {
-    const ImuBias before = errors.bias();
+    const state::ImuBias before = errors.bias();
     const ImuIncrement measured = errors.apply(nothing(0, 0.5));
-    const ImuBias after = errors.bias();
+    const state::ImuBias after = errors.bias();
     EXPECT_LT((measured.dtheta_b - 0.25 * (before.gyro + after.gyro)).norm(), 1e-18);
     EXPECT_LT((measured.dvel_b - 0.25 * (before.accel + after.accel)).norm(), 1e-16);
   }
@@ -180,7 +180,7 @@ TEST(ImuErrors, ScaleFactorsAreConstantFactorsOfEachAxis) {
   exact.dvel_b = {0.01, 0.02, -0.05};
   std::vector<Eigen::Vector3d> gyro, accel;
   for (int seed = 0; seed < 2000; ++seed) {
-    const std::vector<ImuIncrement> measured = run(ImuNoise{}, 300e-6, seed, exact, 2);
+    const std::vector<ImuIncrement> measured = run(imu::ImuNoise{}, 300e-6, seed, exact, 2);
     EXPECT_EQ(measured[0].dtheta_b, measured[1].dtheta_b);
     gyro.push_back((measured[0].dtheta_b - exact.dtheta_b).cwiseQuotient(exact.dtheta_b));
     accel.push_back((measured[0].dvel_b - exact.dvel_b).cwiseQuotient(exact.dvel_b));
@@ -192,15 +192,15 @@ TEST(ImuErrors, ScaleFactorsAreConstantFactorsOfEachAxis) {
 // The difference two errors make is the sum of what each makes alone, draw by draw.
 TEST(ImuErrors, SwitchingOneOnLeavesTheDrawsOfTheOthers) {
   const ImuIncrement exact = exact_increment(city(), kSame, 0, 70'000'000'000, 70'005'000'000);
-  const ImuNoise full = imu_preset("ADIS16465");
-  ImuNoise white, bias = full;
+  const imu::ImuNoise full = imu::imu_preset("ADIS16465");
+  imu::ImuNoise white, bias = full;
   white.gyro_noise_density = full.gyro_noise_density;
   white.accel_noise_density = full.accel_noise_density;
   bias.gyro_noise_density = bias.accel_noise_density = 0;
   const auto together = run(full, 1e-4, 5, exact, 50);
   const auto white_only = run(white, 0, 5, exact, 50);
   const auto bias_only = run(bias, 0, 5, exact, 50);
-  const auto scale_only = run(ImuNoise{}, 1e-4, 5, exact, 50);
+  const auto scale_only = run(imu::ImuNoise{}, 1e-4, 5, exact, 50);
   for (std::size_t i = 0; i < together.size(); ++i) {
     const Eigen::Vector3d angle = white_only[i].dtheta_b + bias_only[i].dtheta_b +
                                   scale_only[i].dtheta_b - 2 * exact.dtheta_b;

@@ -27,7 +27,7 @@ struct Summary {
 
 Summary summarize(const ScenarioOptions& options) {
   const Trajectory truth = make_trajectory(options);
-  const LocalFrame frame(options.start_position());
+  const geodesy::LocalFrame frame(options.start_position());
   const double dt = 0.1;
   Summary s;
   for (double t = 0; t < options.duration_s; t += dt) {

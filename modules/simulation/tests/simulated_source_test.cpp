@@ -11,7 +11,7 @@
 namespace foucault::simulation {
 namespace {
 
-std::vector<Measurement> record(const ScenarioOptions& options, const ImuNoise& noise) {
+std::vector<Measurement> record(const ScenarioOptions& options, const imu::ImuNoise& noise) {
   SimulatedSource source(options, noise);
   std::vector<Measurement> all;
   while (std::optional<Measurement> m = source.next()) all.push_back(*m);
@@ -33,7 +33,7 @@ ScenarioOptions short_trip() {
   return options;
 }
 
-const ImuNoise kNoise = imu_preset("ADIS16465");
+const imu::ImuNoise kNoise = imu::imu_preset("ADIS16465");
 
 TEST(SimulatedSource, GivesEveryMeasurementOfEachRate) {
   const std::vector<Measurement> all = record(short_trip(), kNoise);
@@ -91,7 +91,7 @@ TEST(SimulatedSource, SeedsReproduce) {
 
 TEST(SimulatedSource, ImuNoiseDoesNotChangeTheFixes) {
   const auto noisy = only<GnssFix>(record(short_trip(), kNoise));
-  const auto quiet = only<GnssFix>(record(short_trip(), ImuNoise{}));
+  const auto quiet = only<GnssFix>(record(short_trip(), imu::ImuNoise{}));
   for (std::size_t i = 0; i < noisy.size(); ++i) {
     EXPECT_EQ(noisy[i].antenna.latitude, quiet[i].antenna.latitude);
     EXPECT_EQ(noisy[i].antenna.height, quiet[i].antenna.height);
@@ -105,7 +105,7 @@ TEST(SimulatedSource, ReferenceIsTheTruth) {
   while (std::optional<Measurement> m = source.next()) {
     const ReferencePose* reference = std::get_if<ReferencePose>(&*m);
     if (!reference) continue;
-    const Epoch truth = source.truth(reference->t_ns);
+    const state::Epoch truth = source.truth(reference->t_ns);
     EXPECT_EQ(reference->position.latitude, truth.position.latitude);
     EXPECT_EQ(*reference->velocity_n, truth.velocity_n);
     const Eigen::Quaterniond q_n_b = *reference->q_n_v * source.mounting().q_v_b;
@@ -116,9 +116,9 @@ TEST(SimulatedSource, ReferenceIsTheTruth) {
 
 TEST(SimulatedSource, TrueBiasIsInTheIncrements) {
   const ScenarioOptions options = short_trip();
-  ImuNoise noise = kNoise;
+  imu::ImuNoise noise = kNoise;
   noise.gyro_noise_density = noise.accel_noise_density = 0;
-  SimulatedSource biased(options, noise), perfect(options, ImuNoise{});
+  SimulatedSource biased(options, noise), perfect(options, imu::ImuNoise{});
   while (std::optional<Measurement> m = biased.next()) {
     const std::optional<Measurement> exact = perfect.next();
     const ImuIncrement* increment = std::get_if<ImuIncrement>(&*m);

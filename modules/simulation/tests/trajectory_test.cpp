@@ -17,7 +17,7 @@ namespace foucault::simulation {
 namespace {
 
 Eigen::Matrix3d R_e_n(const Motion& motion) {
-  return wgs84::R_e_n(motion.position.latitude, motion.position.longitude);
+  return geodesy::wgs84::R_e_n(motion.position.latitude, motion.position.longitude);
 }
 
 Eigen::Vector3d velocity_e(const Motion& motion) { return R_e_n(motion) * motion.velocity_n; }
@@ -25,7 +25,7 @@ Eigen::Vector3d velocity_e(const Motion& motion) { return R_e_n(motion) * motion
 /// Attitude in an inertial frame that coincides with e at t = 0.
 Eigen::Quaterniond q_i_v(const Trajectory& trajectory, double t) {
   const Motion motion = trajectory.at(t);
-  const Eigen::AngleAxisd earth_turn(wgs84::kEarthRate * t, Eigen::Vector3d::UnitZ());
+  const Eigen::AngleAxisd earth_turn(geodesy::wgs84::kEarthRate * t, Eigen::Vector3d::UnitZ());
   return Eigen::Quaterniond(earth_turn) * Eigen::Quaterniond(R_e_n(motion)) * motion.q_n_v;
 }
 
@@ -80,23 +80,24 @@ TEST_P(TrajectoryOf, GeodeticPositionIsThatOfEcef) {
   const Trajectory truth = trajectory();
   for (double t : instants()) {
     const Motion motion = truth.at(t);
-    EXPECT_LT((wgs84::geodetic_to_ecef(motion.position) - motion.p_e).norm(), 1e-8);
+    EXPECT_LT((geodesy::wgs84::geodetic_to_ecef(motion.position) - motion.p_e).norm(), 1e-8);
   }
 }
 
 TEST_P(TrajectoryOf, SpecificForceIsInertialAccelerationMinusGravitation) {
   const Trajectory truth = trajectory();
-  const Eigen::Vector3d omega(0, 0, wgs84::kEarthRate);
+  const Eigen::Vector3d omega(0, 0, geodesy::wgs84::kEarthRate);
   for (double t : instants()) {
     const Motion motion = truth.at(t);
     // Acceleration in the inertial frame that coincides with e at t.
     const auto v_i = [&](double at) -> Eigen::Vector3d {
       const Motion m = truth.at(at);
-      const Eigen::AngleAxisd turn(wgs84::kEarthRate * (at - t), Eigen::Vector3d::UnitZ());
+      const Eigen::AngleAxisd turn(geodesy::wgs84::kEarthRate * (at - t), Eigen::Vector3d::UnitZ());
       return turn * Eigen::Vector3d(velocity_e(m) + omega.cross(m.p_e));
     };
     const Eigen::Vector3d a_i = derivative(v_i, t, 0.004);
-    const double gravity = wgs84::normal_gravity(motion.position.latitude, motion.position.height);
+    const double gravity =
+        geodesy::wgs84::normal_gravity(motion.position.latitude, motion.position.height);
     const Eigen::Vector3d gravity_e = R_e_n(motion) * Eigen::Vector3d(0, 0, gravity);
     const Eigen::Vector3d gravitation = gravity_e + omega.cross(omega.cross(motion.p_e));
     const Eigen::Vector3d f_e = R_e_n(motion) * (motion.q_n_v * motion.f_v);
@@ -133,11 +134,11 @@ TEST(Trajectory, AtRestFeelsGravityAndEarthRateOnly) {
     for (double t = 0; t < 35; t += 1.7) {
       const Motion motion = truth.at(t);
       const double gravity =
-          wgs84::normal_gravity(motion.position.latitude, motion.position.height);
+          geodesy::wgs84::normal_gravity(motion.position.latitude, motion.position.height);
       EXPECT_EQ(motion.velocity_n, Eigen::Vector3d::Zero());
       // Rounding only.
       EXPECT_NEAR(motion.f_v.norm(), gravity, 1e-14);
-      EXPECT_NEAR(motion.omega_iv_v.norm(), wgs84::kEarthRate, 1e-19);
+      EXPECT_NEAR(motion.omega_iv_v.norm(), geodesy::wgs84::kEarthRate, 1e-19);
       EXPECT_LT((motion.q_n_v * motion.f_v - Eigen::Vector3d(0, 0, -gravity)).norm(), 1e-14);
     }
   }

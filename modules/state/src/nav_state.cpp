@@ -26,7 +26,8 @@ void difference(const Eigen::Quaterniond& q_y, const ImuBias& bias_y, const Eige
 
 NavState boxplus(const NavState& x, const StateVector& error) {
   NavState y = x;
-  y.position = displaced(x.position, part(error, block::position), Place(x.position));
+  y.position =
+      geodesy::displaced(x.position, part(error, block::position), geodesy::Place(x.position));
   y.velocity_n += part(error, block::velocity);
   correct(error, y.q_n_b, y.bias);
   if (slow_part(error).size() > 0) y.slow += slow_part(error);
@@ -35,7 +36,8 @@ NavState boxplus(const NavState& x, const StateVector& error) {
 
 StateVector boxminus(const NavState& y, const NavState& x) {
   StateVector error(state_size(x.slow.size()));
-  part(error, block::position) = displacement_n(x.position, y.position, Place(x.position));
+  part(error, block::position) =
+      geodesy::displacement_n(x.position, y.position, geodesy::Place(x.position));
   part(error, block::velocity) = y.velocity_n - x.velocity_n;
   difference(y.q_n_b, y.bias, x.q_n_b, x.bias, error);
   slow_part(error) = y.slow - x.slow;

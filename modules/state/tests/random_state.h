@@ -11,9 +11,9 @@
 namespace foucault::testing {
 
 /// Independent normal numbers.
-inline StateVector draw(std::mt19937& rng, Eigen::Index size) {
+inline state::StateVector draw(std::mt19937& rng, Eigen::Index size) {
   std::normal_distribution<double> normal;
-  StateVector v(size);
+  state::StateVector v(size);
   for (double& value : v) value = normal(rng);
   return v;
 }
@@ -25,8 +25,8 @@ inline double between(std::mt19937& rng, double low, double high) {
 }
 
 /// Latitudes to +-80 deg, any longitude and attitude, speeds to 250 m/s.
-inline NavState random_state(std::mt19937& rng, Eigen::Index slow_size) {
-  NavState x;
+inline state::NavState random_state(std::mt19937& rng, Eigen::Index slow_size) {
+  state::NavState x;
   x.position = {between(rng, -80, 80) * kDegree, between(rng, -kPi, kPi), between(rng, -100, 12e3)};
   x.velocity_n = between(rng, 0, 250) * draw3(rng).normalized();
   x.q_n_b = Eigen::Quaterniond(Eigen::Vector4d(draw(rng, 4))).normalized();
@@ -36,11 +36,11 @@ inline NavState random_state(std::mt19937& rng, Eigen::Index slow_size) {
 }
 
 /// Positive definite, full of correlations, about 1 on the diagonal; its condition is below 100.
-inline StateMatrix random_covariance(std::mt19937& rng, Eigen::Index size) {
-  StateMatrix root(size, size);
+inline state::StateMatrix random_covariance(std::mt19937& rng, Eigen::Index size) {
+  state::StateMatrix root(size, size);
   for (Eigen::Index i = 0; i < size; ++i) root.col(i) = draw(rng, size);
   return root * root.transpose() / static_cast<double>(size) +
-         0.1 * StateMatrix::Identity(size, size);
+         0.1 * state::StateMatrix::Identity(size, size);
 }
 
 }  // namespace foucault::testing

@@ -90,7 +90,7 @@ PointStore::PointStore(const std::string& path, const std::vector<Fingerprint>& 
     : path_(path), keys_(keys) {
   std::string head;
   for (const Fingerprint& f : fingerprints) head += fingerprint_line(f);
-  head += csv_line(header) + "\n";
+  head += evaluation::csv_line(header) + "\n";
   open();
   try {
     const std::string text = read_all(file_);
@@ -131,11 +131,11 @@ void PointStore::load(const std::string& text, const std::vector<Fingerprint>& f
     fail(fmt::format("belongs to another search, with other {}; give another --out", f.name));
   }
   const std::optional<std::string_view> titles = lines.next();
-  if (!titles || *titles != csv_line(header)) {
+  if (!titles || *titles != evaluation::csv_line(header)) {
     fail(fmt::format("line {}: not the expected header; give another --out", lines.number()));
   }
   while (const std::optional<std::string_view> line = lines.next()) {
-    const std::optional<Cells> cells = split_csv_line(*line);
+    const std::optional<Cells> cells = evaluation::split_csv_line(*line);
     if (!cells || cells->size() != header.size()) {
       fail(fmt::format("line {}: damaged; remove the line", lines.number()));
     }
@@ -158,7 +158,7 @@ void PointStore::add(const Cells& key, const Cells& results) {
   Cells cells = key;
   cells.insert(cells.end(), results.begin(), results.end());
   const std::lock_guard<std::mutex> lock(mutex_);
-  write(csv_line(cells) + "\n");
+  write(evaluation::csv_line(cells) + "\n");
   rows_[key] = results;
 }
 

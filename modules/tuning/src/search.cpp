@@ -27,29 +27,31 @@ struct RunScore {
   std::string error;
 };
 
-class RunProgress : public OutageRunObserver {
+class RunProgress : public evaluation::OutageRunObserver {
  public:
-  explicit RunProgress(const TaskProgress& progress) : progress_(progress) {}
+  explicit RunProgress(const evaluation::TaskProgress& progress) : progress_(progress) {}
   void progress(double part) override { progress_(part); }
 
  private:
-  const TaskProgress& progress_;
+  const evaluation::TaskProgress& progress_;
 };
 
-RunScore score_run(const ExperimentRun& run, bool needs_outage, const TaskProgress& progress) {
+RunScore score_run(const evaluation::ExperimentRun& run, bool needs_outage,
+                   const evaluation::TaskProgress& progress) {
   RunProgress observer(progress);
   RunScore score;
-  OutageRunResult result;
+  evaluation::OutageRunResult result;
   try {
-    result = run_with_outages(run.open(), run.schedule, run.make_estimator, run.options, &observer);
+    result = evaluation::run_with_outages(run.open(), run.schedule, run.make_estimator, run.options,
+                                          &observer);
   } catch (const DataError& error) {
     score.error = error.what();
     return score;
   }
-  if (needs_outage) require_outage(run, result);
+  if (needs_outage) evaluation::require_outage(run, result);
   score.scheduled = result.scheduled;
   score.cpu_s = result.cpu_s;
-  for (const OutageDrift& drift : result.drifts) {
+  for (const evaluation::OutageDrift& drift : result.drifts) {
     score.horizontal_max.push_back(drift.maximum.horizontal);
     score.vertical_max.push_back(drift.maximum.vertical);
   }
@@ -83,8 +85,8 @@ PointScore score_point(const std::vector<RunScore>& runs) {
   score.outages = static_cast<int64_t>(horizontal.size());
   score.note = flaw(runs, horizontal.size());
   const bool valid = score.note.empty() && !horizontal.empty();
-  score.horizontal_rms = valid ? root_mean_square(horizontal) : kInfinity;
-  score.vertical_rms = valid ? root_mean_square(vertical) : kInfinity;
+  score.horizontal_rms = valid ? evaluation::root_mean_square(horizontal) : kInfinity;
+  score.vertical_rms = valid ? evaluation::root_mean_square(vertical) : kInfinity;
   return score;
 }
 
@@ -147,9 +149,11 @@ std::vector<std::string> key(const SearchPlan& plan, const std::string& method,
 }
 
 /// A recording is too short if not even the outages of its least shift fit.
-bool has_least_shift(const ExperimentRun& run, const std::vector<ExperimentRun>& runs) {
-  return std::all_of(runs.begin(), runs.end(),
-                     [&](const ExperimentRun& other) { return run.shift_s <= other.shift_s; });
+bool has_least_shift(const evaluation::ExperimentRun& run,
+                     const std::vector<evaluation::ExperimentRun>& runs) {
+  return std::all_of(runs.begin(), runs.end(), [&](const evaluation::ExperimentRun& other) {
+    return run.shift_s <= other.shift_s;
+  });
 }
 
 /// Runs as a task each; the last one of a point puts it into the store.
@@ -160,18 +164,19 @@ void compute(const SearchPlan& plan, const std::string& method,
   for (std::size_t i = 0; i < points.size(); ++i) {
     open.push_back(std::make_unique<OpenPoint>(runs_of_point));
   }
-  const auto task = [&](std::size_t index, const TaskProgress& progress) {
+  const auto task = [&](std::size_t index, const evaluation::TaskProgress& progress) {
     const std::size_t p = index / runs_of_point;
     const std::size_t r = index % runs_of_point;
-    const std::vector<ExperimentRun> runs =
+    const std::vector<evaluation::ExperimentRun> runs =
         plan.runs(plan.logs[r / plan.shifts], method, points[p]);
-    const ExperimentRun& run = runs[r % plan.shifts];
+    const evaluation::ExperimentRun& run = runs[r % plan.shifts];
     if (!open[p]->put(r, score_run(run, has_least_shift(run, runs), progress))) return;
     PointScore finished = score_point(open[p]->runs());
     finished.note = one_line(finished.note);
     store.add(key(plan, method, points[p]), cells(finished, cpu_s(open[p]->runs())));
   };
-  run_tasks(points.size() * runs_of_point, plan.threads, task, plan.progress_of(method));
+  evaluation::run_tasks(points.size() * runs_of_point, plan.threads, task,
+                        plan.progress_of(method));
 }
 
 /// In the order of `points`; those that are in the store already are not computed again.

@@ -20,8 +20,8 @@ std::string finite_text(double value) {
 }
 
 /// Every evaluated point, in the order of the grid.
-TextTable results_table(const TuningResult& result) {
-  TextTable table;
+evaluation::TextTable results_table(const TuningResult& result) {
+  evaluation::TextTable table;
   table.header.push_back("method");
   for (const GridAxis& axis : result.config.grid.axes) table.header.push_back(axis.key);
   for (const char* name :
@@ -71,11 +71,11 @@ std::string metrics_text(const TuningResult& result) {
 }
 
 /// A row a pair of values; empty where nothing was evaluated.
-TextTable heat_map_table(const TuneConfig& config, const MethodTuning& tuning, std::size_t x,
-                         std::size_t y) {
+evaluation::TextTable heat_map_table(const TuneConfig& config, const MethodTuning& tuning,
+                                     std::size_t x, std::size_t y) {
   const std::vector<GridAxis>& axes = config.grid.axes;
   const std::vector<std::vector<double>> least = profile(config.grid, tuning.search, x, y);
-  TextTable table{"", {axes[x].key, axes[y].key, "objective_m"}, {}};
+  evaluation::TextTable table{"", {axes[x].key, axes[y].key, "objective_m"}, {}};
   for (std::size_t row = 0; row < least.size(); ++row) {
     for (std::size_t column = 0; column < least[row].size(); ++column) {
       table.rows.push_back(
@@ -103,11 +103,11 @@ std::string map_name(const std::string& method, const std::vector<std::string>& 
   return name;
 }
 
-TextTable best_table(const TuningResult& result) {
+evaluation::TextTable best_table(const TuningResult& result) {
   const TuneConfig& config = result.config;
-  TextTable table{fmt::format("Smallest {}", config.options.objective_name()),
-                  {"Method", "Horizontal (m)", "Vertical (m)", "Outages", "Points"},
-                  {}};
+  evaluation::TextTable table{fmt::format("Smallest {}", config.options.objective_name()),
+                              {"Method", "Horizontal (m)", "Vertical (m)", "Outages", "Points"},
+                              {}};
   for (const GridAxis& axis : config.grid.axes) table.header.push_back(axis.key);
   for (const MethodTuning& tuning : result.tunings) {
     std::vector<std::string> row{
@@ -138,7 +138,7 @@ void write_tuning(const TuningResult& result,
                   const std::function<std::string(const GridPoint&)>& config_at,
                   const std::filesystem::path& folder) {
   const TuneConfig& config = result.config;
-  exports::write_text_file(folder / "results.csv", to_csv(results_table(result)));
+  exports::write_text_file(folder / "results.csv", evaluation::to_csv(results_table(result)));
   exports::write_text_file(folder / "metrics.json", metrics_text(result));
   for (const MethodTuning& tuning : result.tunings) {
     exports::write_text_file(folder / best_file(config, tuning.method),
@@ -148,14 +148,15 @@ void write_tuning(const TuningResult& result,
       const std::string name = map_name(tuning.method, {axes[x].key, axes[y].key}) + ".csv";
       std::filesystem::create_directories(folder / "heatmaps");
       exports::write_text_file(folder / "heatmaps" / name,
-                               to_csv(heat_map_table(config, tuning, x, y)));
+                               evaluation::to_csv(heat_map_table(config, tuning, x, y)));
     });
   }
 }
 
 std::vector<std::string> tuning_lines(const TuningResult& result,
                                       const std::filesystem::path& folder) {
-  std::vector<std::string> lines = text_lines(to_plain_text(best_table(result)));
+  std::vector<std::string> lines =
+      evaluation::text_lines(evaluation::to_plain_text(best_table(result)));
   for (const std::string& edge : edge_lines(result)) lines.push_back(edge);
   for (const MethodTuning& tuning : result.tunings) {
     const std::filesystem::path best = folder / best_file(result.config, tuning.method);

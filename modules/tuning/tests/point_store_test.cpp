@@ -131,8 +131,8 @@ TEST(Hash, KnownValues) {
 
 TEST(CsvLine, ReadsBack) {
   const std::vector<std::string> cells{"", "a,b", "say \"x\"", "plain"};
-  EXPECT_EQ(*split_csv_line(csv_line(cells)), cells);
-  EXPECT_FALSE(split_csv_line("a,\"b"));
+  EXPECT_EQ(*evaluation::split_csv_line(evaluation::csv_line(cells)), cells);
+  EXPECT_FALSE(evaluation::split_csv_line("a,\"b"));
 }
 
 }  // namespace

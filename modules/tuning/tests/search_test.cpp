@@ -31,25 +31,26 @@ class SearchTest : public testing::Test {
     plan_.threads = 2;
     plan_.runs = [this](const std::string&, const std::string& method, const GridPoint& point) {
       ++calls_;
-      return std::vector<ExperimentRun>{run(method, point, 25), run(method, point, 0)};
+      return std::vector<evaluation::ExperimentRun>{run(method, point, 25), run(method, point, 0)};
     };
     plan_.progress_of = [](const std::string&) { return std::function<void(double)>(); };
     folder_.write("log", "content");
   }
 
-  ExperimentRun run(const std::string& method, const GridPoint& point, double shift_s) const {
-    OutageOptions outages;
+  evaluation::ExperimentRun run(const std::string& method, const GridPoint& point,
+                                double shift_s) const {
+    evaluation::OutageOptions outages;
     outages.first_s = 100;
     outages.length_s = 30;
     outages.period_s = 50;
-    ExperimentRun run;
+    evaluation::ExperimentRun run;
     run.recording = "log";
     run.method = method;
     run.shift_s = shift_s;
-    run.schedule = OutageSchedule(outages, shift_s);
+    run.schedule = evaluation::OutageSchedule(outages, shift_s);
     run.open = [this] { return std::make_unique<test::RestSource>(duration_s_, true); };
     const double scale = 1 + std::abs(static_cast<int>(point[0]) - 1) + 2.0 * (point[1] == 0);
-    run.make_estimator = [this, scale](const Mounting&, Sink& sink) {
+    run.make_estimator = [this, scale](const state::Mounting&, state::Sink& sink) {
       if (fails_above_ < scale) throw DataError("scale\ntoo large");
       return std::make_unique<test::DriftingEstimator>(sink, scale);
     };

@@ -54,7 +54,7 @@ class ImuMapping : public TableMapping {
 
   void fields(ConfigFields& f) override;
   /// Throws UsageError if `axes` is no right-handed set of three.
-  Mounting mounting() const;
+  state::Mounting mounting() const;
 };
 
 /// Place of a local frame East-North-Up.

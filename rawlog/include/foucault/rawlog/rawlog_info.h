@@ -61,10 +61,10 @@ struct RawlogInfo {
   int64_t records = 0;          ///< top-level objects read
   std::vector<StreamInfo> streams;
   std::vector<GnssInfo> receivers;
-  std::string imu_label;                ///< the one RawlogSource takes; empty: none
-  std::optional<Mounting> mounting;     ///< of that IMU
-  int64_t imu_not_finite = 0;           ///< samples with a value that is not finite
-  int64_t first_imu_not_finite_ns = 0;  ///< stamp of the first of them
+  std::string imu_label;                    ///< the one RawlogSource takes; empty: none
+  std::optional<state::Mounting> mounting;  ///< of that IMU
+  int64_t imu_not_finite = 0;               ///< samples with a value that is not finite
+  int64_t first_imu_not_finite_ns = 0;      ///< stamp of the first of them
   /// Objects of other classes, with neither label nor stamp: their contents are not read.
   std::map<std::string, int64_t> other_records;
   std::optional<std::string> damage;  ///< one line, if the file breaks off; the rest is up to there

@@ -64,15 +64,16 @@ struct SourceCounts {
 /// IMU, no GNSS, damage before the first of either, more than 100 IMU samples in a row that come
 /// too late (record number and stamp), IMU and GNSS that do not overlap in time or fixes that are
 /// all late (when the log ends).
-class RawlogSource : public Source {
+class RawlogSource : public state::Source {
  public:
-  explicit RawlogSource(const std::string& path, SampleKind samples = SampleKind::interval_mean,
+  explicit RawlogSource(const std::string& path,
+                        imu::SampleKind samples = imu::SampleKind::interval_mean,
                         const RawlogOptions& options = {});
   ~RawlogSource() override;
   RawlogSource(RawlogSource&&) noexcept;
 
   std::optional<Measurement> next() override;
-  const Mounting& mounting() const override;
+  const state::Mounting& mounting() const override;
   double progress() const override;
 
   /// IMU to antenna in b [m], of the first fix.
@@ -81,7 +82,7 @@ class RawlogSource : public Source {
   const std::string& gnss_label() const;
   const SourceCounts& counts() const;
   /// What was left out, one notice a kind, with how many and the stamp of the first.
-  std::vector<Notice> notices() const;
+  std::vector<state::Notice> notices() const;
   /// What ended the log before its end, one line with file, byte and remedy; none yet or at all.
   const std::optional<std::string>& damage() const;
 

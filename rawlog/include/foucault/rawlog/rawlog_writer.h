@@ -12,7 +12,7 @@
 namespace foucault::rawlog {
 
 /// What a rawlog can hold of ours. Event requests are not written.
-using Record = std::variant<GnssFix, WheelSpeed, ReferencePose, ImuSample, ImuIncrement>;
+using Record = std::variant<GnssFix, WheelSpeed, ReferencePose, imu::ImuSample, ImuIncrement>;
 
 int64_t stamp(const Record& record);
 
@@ -39,12 +39,12 @@ enum class WrittenValues {
 /// or a stamp outside the years 1950 to 2150.
 class RawlogWriter {
  public:
-  explicit RawlogWriter(const std::string& path, const Mounting& mounting = {},
+  explicit RawlogWriter(const std::string& path, const state::Mounting& mounting = {},
                         WrittenValues values = WrittenValues::finite);
   ~RawlogWriter();
   RawlogWriter(RawlogWriter&&) noexcept;
 
-  void write(const ImuSample& sample);
+  void write(const imu::ImuSample& sample);
   void write(const ImuIncrement& increment);
   void write(const GnssFix& fix);
   void write(const ReferencePose& pose);

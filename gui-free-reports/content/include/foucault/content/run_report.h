@@ -27,16 +27,16 @@ struct RunLabels {
 /// errors where there is a reference, consistency, GNSS innovations, position, velocity, attitude,
 /// uncertainty, biases, data health.
 /// Calls come in order of stamps within each kind; kinds may interleave in any way.
-class RunReport : public Sink {
+class RunReport : public state::Sink {
  public:
-  RunReport(RunLabels labels, const Mounting& mounting);
+  RunReport(RunLabels labels, const state::Mounting& mounting);
   ~RunReport() override;
 
-  void epoch(const Epoch& epoch) override;
-  void fix(const FixResult& fix) override;
-  void notice(const Notice& notice) override;
+  void epoch(const state::Epoch& epoch) override;
+  void fix(const state::FixResult& fix) override;
+  void notice(const state::Notice& notice) override;
   /// `epoch` is the one the error belongs to; its covariance gives the bounds.
-  void reference_error(const Epoch& epoch, const ReferenceError& error);
+  void reference_error(const state::Epoch& epoch, const state::ReferenceError& error);
 
   /// Drawn over time if there is a consistency().
   void normalized_square(const NormalizedSquare& square);

@@ -44,8 +44,8 @@ class Aligner {
  public:
   /// Throws UsageError if mode `given` lacks an angle.
   /// `layout`: what is estimated, as far as the alignment has to do with it.
-  Aligner(const AlignmentOptions& options, const ImuNoise& noise, const Mounting& mounting,
-          const Layout& layout = {});
+  Aligner(const AlignmentOptions& options, const imu::ImuNoise& noise,
+          const state::Mounting& mounting, const state::Layout& layout = {});
   ~Aligner();
   Aligner(Aligner&&) noexcept;
   Aligner& operator=(Aligner&&) noexcept;
@@ -58,7 +58,7 @@ class Aligner {
   void add(const ImuIncrement& increment);
 
   /// The state to start from once it is known; its stamp may lie in the past.
-  const std::optional<Epoch>& initial() const;
+  const std::optional<state::Epoch>& initial() const;
   /// How it was found, one line.
   std::string summary() const;
 

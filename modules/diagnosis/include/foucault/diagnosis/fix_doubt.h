@@ -11,9 +11,9 @@
 
 #include "foucault/core/measurement.h"
 #include "foucault/diagnosis/fix_judge.h"
+#include "foucault/diagnosis/return_trial.h"
 #include "foucault/measurement/navigator.h"
 #include "foucault/state/result.h"
-#include "foucault/diagnosis/return_trial.h"
 
 namespace foucault::diagnosis {
 
@@ -38,8 +38,9 @@ struct FixDecision {
 
 /// What became of a doubt.
 struct DoubtOutcome {
-  std::vector<FixDecision> fixes;      ///< from the one that raised it on, in order
-  std::optional<NodeMatrix> loosened;  ///< what the state is to be loosened by before the first
+  std::vector<FixDecision> fixes;  ///< from the one that raised it on, in order
+  std::optional<state::NodeMatrix>
+      loosened;  ///< what the state is to be loosened by before the first
   bool state_was_wrong = false;
   std::vector<double> level;         ///< normalized squares that fixes were found to have
   std::vector<std::string> notices;  ///< one line each
@@ -68,8 +69,8 @@ class FixDoubt {
  public:
   /// At the current time of `navigator`, which stands before the use of `fix`. `returns`: no fix
   /// has held the state for a while.
-  FixDoubt(const GnssOptions& options, const FixJudge& judge, const Navigator& navigator,
-           const GnssFix& fix, bool returns);
+  FixDoubt(const GnssOptions& options, const FixJudge& judge,
+           const measurement::Navigator& navigator, const GnssFix& fix, bool returns);
 
   /// In the order in which the navigator will get them; fixes that can be judged only. True once it
   /// is decided, also by what ends the sight ahead: a hole, or no fixes any more.
@@ -98,7 +99,7 @@ class FixDoubt {
   std::size_t look_needs() const;
   void look_at();
   void begin_line(const InnovationLine& line);
-  void follow_line(const GnssFix& fix, const Innovation& innovation, double since_last);
+  void follow_line(const GnssFix& fix, const state::Innovation& innovation, double since_last);
   void end_line(const GnssFix& fix);
   void use_corrected(const Eigen::Vector3d& error_n, const Eigen::Matrix3d& variance_n,
                      double since_last);
@@ -112,11 +113,11 @@ class FixDoubt {
     std::vector<bool> is_true;
     bool believes_most() const;
   };
-  Pass drive_again(std::unique_ptr<Navigator> navigator) const;
+  Pass drive_again(std::unique_ptr<measurement::Navigator> navigator) const;
   void move_state();
   void settle_at_end();
 
-  NodeMatrix looseness() const;
+  state::NodeMatrix looseness() const;
   InnovationLine fit() const;
   bool scatters_about_zero() const;
   bool lies_on(const InnovationLine& line) const;
@@ -125,16 +126,16 @@ class FixDoubt {
   bool is_smooth() const;
 
   GnssOptions options_;
-  FixJudge judge_;                    ///< as it was
-  std::unique_ptr<Navigator> start_;  ///< stays where the doubt begins
-  std::unique_ptr<Navigator> ahead_;
+  FixJudge judge_;                                 ///< as it was
+  std::unique_ptr<measurement::Navigator> start_;  ///< stays where the doubt begins
+  std::unique_ptr<measurement::Navigator> ahead_;
   std::vector<ImuIncrement> driven_;  ///< by ahead_, divided at fixes
   std::optional<ReturnTrial> trial_;
   bool offset_is_certain_ = false;
   std::vector<std::size_t> tried_;  ///< which of the fixes the trial has got
   int64_t first_missed_ns_ = 0;     ///< the first fix since an offset was met last
-  Epoch begin_;                     ///< the state at the first fix
-  Epoch held_;  ///< the same, or without a covariance once a line has shown the velocity
+  state::Epoch begin_;              ///< the state at the first fix
+  state::Epoch held_;  ///< the same, or without a covariance once a line has shown the velocity
   Eigen::Vector3d begin_innovation_n_;
   Eigen::Vector3d begin_variance_n_;  ///< of the innovation there
   int64_t time_ns_;

@@ -11,7 +11,7 @@ namespace foucault::diagnosis {
 
 /// e' S^-1 e.
 double mahalanobis_squared(const Eigen::Vector3d& value, const Eigen::Matrix3d& covariance);
-double mahalanobis_squared(const Innovation& innovation);
+double mahalanobis_squared(const state::Innovation& innovation);
 
 /// Decides whether measurements of one kind, fixes for example, agree with the prediction: by the
 /// chi-square test of their dimension, relative to the median
@@ -36,7 +36,7 @@ class FixJudge {
   bool state_is_doubted(int64_t t_ns) const { return t_ns <= state_doubted_until_ns_; }
 
   /// Whether a fix is believed at first sight; remembers what it has seen.
-  bool believes(int64_t t_ns, const Innovation& innovation);
+  bool believes(int64_t t_ns, const state::Innovation& innovation);
   /// The chi-square test alone.
   bool passes(double square) const;
 

@@ -63,7 +63,7 @@ struct LogFacts {
 /// Collects the facts of a recording, in constant memory, and judges them.
 class LogChecker {
  public:
-  LogChecker(const ImuNoise& configured, const Mounting& mounting);
+  LogChecker(const imu::ImuNoise& configured, const state::Mounting& mounting);
   ~LogChecker();
 
   void add(const Measurement& measurement);
@@ -73,7 +73,7 @@ class LogChecker {
   std::vector<Finding> findings() const;
   /// Those that are not well, stamped where the IMU begins, but for samples and fixes that
   /// a NavigationRun names itself.
-  std::vector<Notice> warnings() const;
+  std::vector<state::Notice> warnings() const;
 
  private:
   class Impl;
@@ -81,6 +81,6 @@ class LogChecker {
 };
 
 /// The judgement of facts alone.
-std::vector<Finding> judge(const LogFacts& facts, const ImuNoise& configured);
+std::vector<Finding> judge(const LogFacts& facts, const imu::ImuNoise& configured);
 
 }  // namespace foucault::diagnosis

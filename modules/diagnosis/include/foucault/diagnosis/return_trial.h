@@ -15,7 +15,7 @@ struct FixLikelihood {
   bool is_true = false;
   double log_density = 0;
 };
-FixLikelihood likelihood_of(const Innovation& innovation);
+FixLikelihood likelihood_of(const state::Innovation& innovation);
 
 /// A noise model is off by a factor of ten now and then, the errors of a consumer IMU in curves by
 /// more. The prior of a scale falls as 1 / scale.
@@ -44,7 +44,7 @@ class ReturnTrial {
   };
 
   /// `level`: what the variances of fixes are to be multiplied by. The first fix is the next one.
-  ReturnTrial(const Navigator& navigator, const GnssFix& first, double level);
+  ReturnTrial(const measurement::Navigator& navigator, const GnssFix& first, double level);
 
   void propagate(const ImuIncrement& increment);
   void add(const GnssFix& fix);
@@ -55,15 +55,15 @@ class ReturnTrial {
 
  private:
   struct Hypothesis {
-    std::unique_ptr<Navigator> navigator;
+    std::unique_ptr<measurement::Navigator> navigator;
     double scale = 1;
     bool offset = false;
     double log_probability = 0;
     std::vector<bool> used;
   };
 
-  void add_scale(const Navigator& navigator, double scale);
-  void add_offset(const Navigator& navigator, double variance);
+  void add_scale(const measurement::Navigator& navigator, double scale);
+  void add_offset(const measurement::Navigator& navigator, double variance);
   const Hypothesis& best_scale() const;
   static void try_fix(Hypothesis& hypothesis, const GnssFix& fix);
 

@@ -22,22 +22,22 @@ class EkfOptions : public Configurable {
 /// The biases' nominal values stay as they are between updates (their turn-on values do not decay);
 /// their errors are the Gauss-Markov processes of MarkovBias, those of slow blocks as the layout
 /// has them.
-class EkfNavigator : public Navigator {
+class EkfNavigator : public measurement::Navigator {
  public:
-  EkfNavigator(const ImuNoise& imu, const Layout& layout, const EkfOptions& options);
+  EkfNavigator(const imu::ImuNoise& imu, const state::Layout& layout, const EkfOptions& options);
 
-  void start(const Epoch& initial) override;
+  void start(const state::Epoch& initial) override;
   void propagate(const ImuIncrement& increment) override;
-  Innovation innovation(const Observation& observation) const override;
-  void update(const ObservationPtr& observation) override;
-  void loosen(const NodeMatrix& added) override;
-  std::unique_ptr<Navigator> ahead(double scale) const override;
+  state::Innovation innovation(const measurement::Observation& observation) const override;
+  void update(const measurement::ObservationPtr& observation) override;
+  void loosen(const state::NodeMatrix& added) override;
+  std::unique_ptr<measurement::Navigator> ahead(double scale) const override;
   void hold() override {}
-  Epoch epoch() const override;
+  state::Epoch epoch() const override;
 
-  const NavState& state() const { return state_; }
+  const state::NavState& state() const { return state_; }
   /// At the current time.
-  StateMatrix covariance() const;
+  state::StateMatrix covariance() const;
 
  protected:
   /// Brings the covariance to the current time.
@@ -47,18 +47,18 @@ class EkfNavigator : public Navigator {
 
  private:
   ekf::Transition pending() const;
-  Linearized linearize(const Observation& observation) const;
+  state::Linearized linearize(const measurement::Observation& observation) const;
 
   ekf::ProcessNoise noise_;
   double cov_interval_;
 
-  NavState state_;
+  state::NavState state_;
   ImuIncrement previous_;  ///< compensated; of no length after a start
-  RecentRates rates_{kLeverArmRateMemory};
+  imu::RecentRates rates_{imu::kLeverArmRateMemory};
   Eigen::Matrix3d R_n_b_ = Eigen::Matrix3d::Identity();
 
-  StateMatrix covariance_;  ///< at covered_.t_ns
-  NavState covered_;
+  state::StateMatrix covariance_;  ///< at covered_.t_ns
+  state::NavState covered_;
   ekf::MotionIntegrals integrals_;  ///< since then
 };
 

@@ -13,8 +13,8 @@ namespace foucault::ekf {
 
 /// Process noise of the state: of the IMU and its biases, and of the slow blocks.
 struct ProcessNoise {
-  ImuNoise imu;
-  Layout layout;
+  imu::ImuNoise imu;
+  state::Layout layout;
 };
 
 /// What the error dynamics need of the motion over one or several increments: integrals in n of
@@ -30,32 +30,32 @@ struct MotionIntegrals {
 
   /// Adds a compensated increment over which R_n_b changes as given.
   void add(const ImuIncrement& increment, const Eigen::Matrix3d& R_n_b_begin,
-           const Eigen::Matrix3d& R_n_b_end, const ImuNoise& noise);
+           const Eigen::Matrix3d& R_n_b_end, const imu::ImuNoise& noise);
 };
 
 /// A transition of errors. The rows of position, velocity and attitude are full; those of what
 /// drives them below hold nothing but its decay on the diagonal.
 struct Phi {
-  MotionByState motion;
-  StateVector decay;
+  state::MotionByState motion;
+  state::StateVector decay;
 
-  StateMatrix full() const;
+  state::StateMatrix full() const;
 };
 Phi operator*(const Phi& later, const Phi& earlier);
 
 /// error(end) = phi * error(begin) + w, var w = q.
 struct Transition {
   Phi phi;
-  StateMatrix q;
+  state::StateMatrix q;
 };
 
 /// Transition over the integrals' interval, from `begin` to `end`. Series to the third order in dt
 /// of the mean dynamics; biases and slow blocks as Gauss-Markov processes in closed form;
 /// q by Simpson's rule, exact for white noise integrated into velocity and position.
-Transition transition(const MotionIntegrals& integrals, const NavState& begin, const NavState& end,
-                      const ProcessNoise& noise);
+Transition transition(const MotionIntegrals& integrals, const state::NavState& begin,
+                      const state::NavState& end, const ProcessNoise& noise);
 
 /// phi P phi' + q.
-StateMatrix propagated(const StateMatrix& covariance, const Transition& transition);
+state::StateMatrix propagated(const state::StateMatrix& covariance, const Transition& transition);
 
 }  // namespace foucault::ekf

@@ -12,10 +12,10 @@ namespace foucault::ekf {
 
 /// The forward solution at one instant, and how it came there from the node before.
 struct RtsNode {
-  NavState predicted;  ///< before it was measured
-  PackedSymmetric predicted_covariance;
-  NavState filtered;  ///< after it; the same where nothing was measured
-  PackedSymmetric filtered_covariance;
+  state::NavState predicted;  ///< before it was measured
+  state::PackedSymmetric predicted_covariance;
+  state::NavState filtered;  ///< after it; the same where nothing was measured
+  state::PackedSymmetric filtered_covariance;
   /// ekf::Phi from the node before, at its filtered state.
   Eigen::MatrixXd motion;
   Eigen::VectorXd decay;
@@ -23,24 +23,24 @@ struct RtsNode {
 };
 
 /// The backward pass. One result a node; the nodes are used up on the way.
-std::deque<SmoothedEpoch> smooth(std::deque<RtsNode> nodes);
+std::deque<measurement::SmoothedEpoch> smooth(std::deque<RtsNode> nodes);
 
 /// The EKF, with a node left at the start and the end of a run, wherever something was measured, at
 /// every hold, and wherever marked.
 /// Memory grows by about 5 kB a node, however many increments lie between.
-class RtsRecorder : public EkfNavigator, public Recording {
+class RtsRecorder : public EkfNavigator, public measurement::Recording {
  public:
   using EkfNavigator::EkfNavigator;
 
-  void start(const Epoch& initial) override;
-  void update(const ObservationPtr& observation) override;
-  void loosen(const NodeMatrix& added) override;
+  void start(const state::Epoch& initial) override;
+  void update(const measurement::ObservationPtr& observation) override;
+  void loosen(const state::NodeMatrix& added) override;
   void hold() override { mark(); }
 
   std::size_t mark() override;
   bool at_node() const override;
   std::size_t size() const override { return nodes_.size(); }
-  std::deque<SmoothedEpoch> smoothed() override { return smooth(std::move(nodes_)); }
+  std::deque<measurement::SmoothedEpoch> smoothed() override { return smooth(std::move(nodes_)); }
 
  protected:
   void stepped(const ekf::Phi& phi) override;

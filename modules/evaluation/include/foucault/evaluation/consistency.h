@@ -108,8 +108,8 @@ class ConsistencyCollector {
   explicit ConsistencyCollector(int64_t from_ns = std::numeric_limits<int64_t>::min(),
                                 Callback callback = {});
 
-  void fix(const FixResult& fix);
-  void prediction(const PredictionResult& prediction);
+  void fix(const state::FixResult& fix);
+  void prediction(const state::PredictionResult& prediction);
   /// Position and velocity: NED and `kind`'s block of the covariance; attitude: in v.
   void error(NormalizedKind kind, int64_t t_ns, const Eigen::Vector3d& error,
              const Eigen::Matrix3d& covariance);

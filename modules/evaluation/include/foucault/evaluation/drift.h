@@ -72,8 +72,8 @@ OutageDrift outage_drift(const Outage& outage, std::vector<DriftSample> samples,
 const DriftSample* sample_near(const std::vector<DriftSample>& samples, double since_begin_s);
 
 /// Position of the antenna by an epoch, and its covariance in NED [m^2].
-Geodetic antenna_position(const Epoch& epoch, const Eigen::Vector3d& p_b_a);
-Eigen::Matrix3d antenna_covariance(const Epoch& epoch, const Eigen::Vector3d& p_b_a);
+Geodetic antenna_position(const state::Epoch& epoch, const Eigen::Vector3d& p_b_a);
+Eigen::Matrix3d antenna_covariance(const state::Epoch& epoch, const Eigen::Vector3d& p_b_a);
 
 /// Collects the errors during outages.
 class DriftCollector {
@@ -104,14 +104,14 @@ class DriftCollector {
 /// reference. Epochs come at any time after their fix, in order of stamps.
 class FixTruth {
  public:
-  using Callback = std::function<void(const Outage&, const GnssFix&, const Epoch&,
+  using Callback = std::function<void(const Outage&, const GnssFix&, const state::Epoch&,
                                       const Eigen::Vector3d& error_n)>;
 
   explicit FixTruth(Callback callback);
 
   /// `outage`: the one that the fix belongs to.
   void add(const Outage& outage, const GnssFix& fix);
-  void epoch(const Epoch& epoch);
+  void epoch(const state::Epoch& epoch);
 
  private:
   struct Truth {

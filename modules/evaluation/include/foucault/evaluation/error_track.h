@@ -25,7 +25,7 @@ class ErrorTrack {
   explicit ErrorTrack(std::size_t capacity = 4096);
 
   /// In order of stamps.
-  void add(const Epoch& epoch, const Eigen::Vector3d& error_n);
+  void add(const state::Epoch& epoch, const Eigen::Vector3d& error_n);
 
   const std::vector<TrackPoint>& points() const { return points_; }
 

@@ -15,7 +15,7 @@
 namespace foucault::evaluation {
 
 /// Opens a recording from its beginning; called on the thread of the run.
-using SourceFactory = std::function<std::unique_ptr<Source>()>;
+using SourceFactory = std::function<std::unique_ptr<state::Source>()>;
 
 /// One method over one recording with one schedule of outages.
 struct ExperimentRun {
@@ -41,9 +41,9 @@ struct ExperimentResult {
   std::string method;
   double shift_s = 0;
   OutageRunResult run;
-  std::vector<TrackPoint> track;  ///< errors against the truth of `run`
-  std::vector<Notice> notices;    ///< the first ones
-  std::string failure;            ///< of the estimator, one line; else empty
+  std::vector<TrackPoint> track;       ///< errors against the truth of `run`
+  std::vector<state::Notice> notices;  ///< the first ones
+  std::string failure;                 ///< of the estimator, one line; else empty
 };
 
 /// Runs one of them. `progress` gets the part done; what it throws goes through.

@@ -58,14 +58,14 @@ class OutageSchedule {
 
 /// Withholds fixes: in their place an EpochRequest of the same stamp walks on, so that there is an
 /// estimate to compare with. All else passes unchanged.
-class OutageSource : public Source {
+class OutageSource : public state::Source {
  public:
   using Withheld = std::function<void(const Outage&, const GnssFix&)>;
 
-  OutageSource(std::unique_ptr<Source> source, OutageSchedule schedule, Withheld withheld);
+  OutageSource(std::unique_ptr<state::Source> source, OutageSchedule schedule, Withheld withheld);
 
   std::optional<Measurement> next() override;
-  const Mounting& mounting() const override;
+  const state::Mounting& mounting() const override;
   double progress() const override;
 
   /// The outage at a stamp that has been read; none before the first fix.
@@ -79,7 +79,7 @@ class OutageSource : public Source {
   double from_first_fix(const GnssFix& fix) const;
 
  private:
-  std::unique_ptr<Source> source_;
+  std::unique_ptr<state::Source> source_;
   OutageSchedule schedule_;
   Withheld withheld_;
   std::optional<int64_t> first_fix_ns_;

@@ -33,21 +33,23 @@ struct OutageRunOptions {
 };
 
 /// Makes an estimator that gives out to the sink.
-using EstimatorFactory = std::function<std::unique_ptr<Estimator>(const Mounting&, Sink&)>;
+using EstimatorFactory =
+    std::function<std::unique_ptr<state::Estimator>(const state::Mounting&, state::Sink&)>;
 
 /// What else wants to see a run.
-class OutageRunObserver : public Sink {
+class OutageRunObserver : public state::Sink {
  public:
-  virtual void reference_error(const Epoch&, const ReferenceError&) {}
+  virtual void reference_error(const state::Epoch&, const state::ReferenceError&) {}
   /// In outages: against the withheld fix of the same stamp, at the antenna, NED [m].
-  virtual void withheld_error(const Outage&, const Epoch&, const Eigen::Vector3d&) {}
+  virtual void withheld_error(const Outage&, const state::Epoch&, const Eigen::Vector3d&) {}
   virtual void progress(double) {}
 };
 
 /// Runs one estimator over one recording with outages. Truth is the reference if it covers
 /// every outage that the withheld fixes cover, else these fixes, at the antenna.
 /// Throws what source and estimator throw.
-OutageRunResult run_with_outages(std::unique_ptr<Source> source, const OutageSchedule& schedule,
+OutageRunResult run_with_outages(std::unique_ptr<state::Source> source,
+                                 const OutageSchedule& schedule,
                                  const EstimatorFactory& make_estimator,
                                  const OutageRunOptions& options = {},
                                  OutageRunObserver* observer = nullptr);

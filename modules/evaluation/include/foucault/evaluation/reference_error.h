@@ -15,8 +15,8 @@ ReferencePose interpolate(const ReferencePose& a, const ReferencePose& b, int64_
 
 /// Estimate minus reference of the same stamp. Velocity and attitude where the reference has them;
 /// attitude errors are differences of the vehicle's Euler angles.
-ReferenceError reference_error(const Epoch& epoch, const Mounting& mounting,
-                               const ReferencePose& reference);
+state::ReferenceError reference_error(const state::Epoch& epoch, const state::Mounting& mounting,
+                                      const ReferencePose& reference);
 
 struct ReferenceComparisonOptions {
   double max_gap_s = 1;  ///< longest interval between two references to interpolate over [s]
@@ -32,27 +32,27 @@ struct ReferenceComparisonOptions {
 class ReferenceComparison {
  public:
   /// Called in order of stamps, with the epoch that the error belongs to.
-  using Callback = std::function<void(const Epoch&, const ReferenceError&)>;
+  using Callback = std::function<void(const state::Epoch&, const state::ReferenceError&)>;
 
-  ReferenceComparison(const Mounting& mounting, Callback callback,
+  ReferenceComparison(const state::Mounting& mounting, Callback callback,
                       const ReferenceComparisonOptions& options = {});
 
   void add(const ReferencePose& reference);
-  void add(const Epoch& epoch);
+  void add(const state::Epoch& epoch);
 
  private:
   void compare_pending();
-  bool compare(const Epoch& epoch);
+  bool compare(const state::Epoch& epoch);
   bool close_enough(const ReferencePose& a, const ReferencePose& b) const;
-  void emit(const Epoch& epoch, const ReferencePose& reference) const;
+  void emit(const state::Epoch& epoch, const ReferencePose& reference) const;
 
-  Mounting mounting_;
+  state::Mounting mounting_;
   Callback callback_;
   int64_t max_gap_ns_;
   int64_t max_linear_gap_ns_;
   int64_t keep_ns_;
   std::deque<ReferencePose> references_;  ///< from the last one not after the first pending epoch
-  std::deque<Epoch> pending_;
+  std::deque<state::Epoch> pending_;
 };
 
 }  // namespace foucault::evaluation

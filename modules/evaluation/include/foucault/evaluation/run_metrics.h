@@ -54,10 +54,11 @@ struct ReferenceMetrics {
 
 /// A slow block at the last epoch.
 struct CalibratedBlock {
-  Block block;
+  state::Block block;
   std::vector<double> value, sigma;
 };
-std::vector<CalibratedBlock> calibrated_blocks(const Epoch& epoch, const Layout& layout);
+std::vector<CalibratedBlock> calibrated_blocks(const state::Epoch& epoch,
+                                               const state::Layout& layout);
 
 struct RunMetrics {
   Aids aids;
@@ -74,19 +75,19 @@ std::optional<double> normalized_square(const Eigen::Vector3d& error,
                                         const Eigen::Matrix3d& covariance);
 
 /// Collects the metrics of a run, in bounded memory.
-class RunMetricsCollector : public Sink {
+class RunMetricsCollector : public state::Sink {
  public:
   /// Statistics count from `from_ns` on (a settling time is left out); counts of epochs and fixes
   /// and the duration are over the whole run. `on_square` is told every normalized square.
-  explicit RunMetricsCollector(const Mounting& mounting,
+  explicit RunMetricsCollector(const state::Mounting& mounting,
                                int64_t from_ns = std::numeric_limits<int64_t>::min(),
                                ConsistencyCollector::Callback on_square = {});
 
-  void epoch(const Epoch& epoch) override;
-  void fix(const FixResult& fix) override;
-  void observation(const ObservationResult& result) override;
-  void prediction(const PredictionResult& prediction) override;
-  void reference_error(const Epoch& epoch, const ReferenceError& error);
+  void epoch(const state::Epoch& epoch) override;
+  void fix(const state::FixResult& fix) override;
+  void observation(const state::ObservationResult& result) override;
+  void prediction(const state::PredictionResult& prediction) override;
+  void reference_error(const state::Epoch& epoch, const state::ReferenceError& error);
 
   RunMetrics metrics() const;
 
@@ -107,11 +108,11 @@ class RunMetricsCollector : public Sink {
     InsideSigma inside_sigma() const;
   };
 
-  void add_rejected(const FixResult& fix);
-  void add_attitude(const Epoch& epoch, int64_t t_ns, const Eigen::Vector3d& euler_error);
+  void add_rejected(const state::FixResult& fix);
+  void add_attitude(const state::Epoch& epoch, int64_t t_ns, const Eigen::Vector3d& euler_error);
   ReferenceMetrics reference_metrics(const Consistency& consistency) const;
 
-  Mounting mounting_;
+  state::Mounting mounting_;
   int64_t from_ns_;
   StateCount states_;
   int64_t last_ns_ = 0;

@@ -8,7 +8,7 @@
 #include "foucault/evaluation/outage_consistency.h"
 
 /// What an evaluation amounts to.
-namespace foucault {
+namespace foucault::evaluation {
 
 /// Results, joined in the ways in which they are shown. Differences are from the first method.
 class EvaluationSummary {
@@ -60,4 +60,4 @@ std::string outages_text(const EvaluationSummary& summary);
 /// The tables and what they rest on, for the terminal.
 std::vector<std::string> evaluation_lines(const EvaluationSummary& summary);
 
-}  // namespace foucault
+}  // namespace foucault::evaluation

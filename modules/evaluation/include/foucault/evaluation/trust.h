@@ -31,7 +31,7 @@ struct AidMetrics {
 using Aids = std::map<std::string, AidMetrics>;  ///< by name
 
 /// Every number of it, covariance included.
-bool is_finite(const Epoch& epoch);
+bool is_finite(const state::Epoch& epoch);
 
 /// Of what a run amounts to. The size of innovations is the root of mean NIS / 3, 1 if their
 /// covariances are right.

@@ -17,7 +17,7 @@ struct Provenance {
 /// drift.csv, metrics.json, config.yaml and tables/table_iii, table_iv, statistics,
 /// normalized_drift, after_return (.csv, .md); for recordings that go far, also tables/distance and
 /// distance_difference.
-void write_evaluation(const EvaluationSummary& summary, const Provenance& origin,
+void write_evaluation(const evaluation::EvaluationSummary& summary, const Provenance& origin,
                       const std::filesystem::path& folder);
 
 }  // namespace foucault::exports

@@ -11,18 +11,18 @@ namespace foucault::exports {
 
 /// An epoch in the units and axes of solution.csv: local NED of the vehicle's place, attitude of
 /// the vehicle (forward-right-down).
-std::string csv_row(const Epoch& epoch, const Mounting& mounting);
+std::string csv_row(const state::Epoch& epoch, const state::Mounting& mounting);
 std::string csv_header();
 
 class SolutionCsv : public SolutionFile {
  public:
-  SolutionCsv(const std::filesystem::path& path, const Mounting& mounting);
+  SolutionCsv(const std::filesystem::path& path, const state::Mounting& mounting);
 
-  void epoch(const Epoch& epoch) override { file_.write(csv_row(epoch, mounting_)); }
+  void epoch(const state::Epoch& epoch) override { file_.write(csv_row(epoch, mounting_)); }
   void finish() override { file_.close(); }
 
  private:
-  Mounting mounting_;
+  state::Mounting mounting_;
   TextFile file_;
 };
 

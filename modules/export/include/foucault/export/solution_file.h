@@ -9,7 +9,7 @@ namespace foucault::exports {
 class SolutionFile {
  public:
   virtual ~SolutionFile() = default;
-  virtual void epoch(const Epoch& epoch) = 0;
+  virtual void epoch(const state::Epoch& epoch) = 0;
   /// Completes the file.
   virtual void finish() = 0;
 };

@@ -11,11 +11,11 @@ namespace foucault::exports {
 
 /// Streams the solution into solution.csv, solution.tum and solution.kml of a folder. Throws
 /// WriteError if they cannot be written.
-class SolutionWriter : public Sink {
+class SolutionWriter : public state::Sink {
  public:
-  SolutionWriter(const std::filesystem::path& folder, const Mounting& mounting);
+  SolutionWriter(const std::filesystem::path& folder, const state::Mounting& mounting);
 
-  void epoch(const Epoch& epoch) override;
+  void epoch(const state::Epoch& epoch) override;
 
   /// Completes the files.
   void finish();

@@ -18,7 +18,7 @@ class TrackKml : public SolutionFile {
  public:
   explicit TrackKml(const std::filesystem::path& path);
 
-  void epoch(const Epoch& epoch) override;
+  void epoch(const state::Epoch& epoch) override;
   void finish() override;
 
  private:
@@ -33,7 +33,7 @@ class TrackKml : public SolutionFile {
   void cut_at_antimeridian(const Vertex& next);
   void begin_line(std::size_t accuracy_class);
   void end_line();
-  void mark(const Epoch& epoch);
+  void mark(const state::Epoch& epoch);
 
   TextFile file_;
   std::optional<std::size_t> line_class_;  ///< of the line that is open

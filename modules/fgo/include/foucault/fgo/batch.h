@@ -20,58 +20,61 @@ class BatchOptions : public Configurable {
   std::string start = "ekf";   ///< forward method that gives the first estimate
 
   void fields(ConfigFields& f) override;
-  PreintegrationModel preintegration_model() const;
+  preintegration::PreintegrationModel preintegration_model() const;
 };
 
 /// Runs another navigator forward and leaves the chain of its way.
 /// A node stands at every observation, hold and mark, and the ends of a run; less than 6 kB each.
 /// Increments are kept only while the bias is so uncertain that the
 /// interval may have to be integrated again.
-class BatchRecorder final : public Navigator, public Recording {
+class BatchRecorder final : public measurement::Navigator, public measurement::Recording {
  public:
   /// Throws UsageError for noise of the IMU that is zero, naming its key; a bias may be constant.
-  BatchRecorder(std::unique_ptr<Navigator> forward, const FgoOptions& options,
-                PreintegrationModel model, const ImuNoise& noise, const Layout& layout = {});
+  BatchRecorder(std::unique_ptr<measurement::Navigator> forward, const FgoOptions& options,
+                preintegration::PreintegrationModel model, const imu::ImuNoise& noise,
+                const state::Layout& layout = {});
 
-  void start(const Epoch& initial) override;
+  void start(const state::Epoch& initial) override;
   void propagate(const ImuIncrement& increment) override;
-  Innovation innovation(const Observation& observation) const override {
+  state::Innovation innovation(const measurement::Observation& observation) const override {
     return forward_->innovation(observation);
   }
-  void update(const ObservationPtr& observation) override;
-  void loosen(const NodeMatrix& added) override;
-  std::unique_ptr<Navigator> ahead(double scale) const override { return forward_->ahead(scale); }
+  void update(const measurement::ObservationPtr& observation) override;
+  void loosen(const state::NodeMatrix& added) override;
+  std::unique_ptr<measurement::Navigator> ahead(double scale) const override {
+    return forward_->ahead(scale);
+  }
   void hold() override;
-  Epoch epoch() const override { return forward_->epoch(); }
+  state::Epoch epoch() const override { return forward_->epoch(); }
 
   std::size_t mark() override;
   bool at_node() const override { return integrator_ && integrator_->dt() == 0; }
   std::size_t size() const override { return passages_.size(); }
-  std::deque<SmoothedEpoch> smoothed() override;
+  std::deque<measurement::SmoothedEpoch> smoothed() override;
 
  private:
   /// What the forward run had at a node, without slow blocks.
   struct Passage {
-    NavState predicted, filtered;
+    state::NavState predicted, filtered;
   };
 
-  SquareRootPrior prior_of(const Epoch& epoch) const;
-  void begin_interval(const Epoch& now);
+  SquareRootPrior prior_of(const state::Epoch& epoch) const;
+  void begin_interval(const state::Epoch& now);
   void close_interval();
-  void add_node(const Epoch& now);
-  SmoothedEpoch smoothed_at(const Passage& passage, const Epoch& epoch) const;
+  void add_node(const state::Epoch& now);
+  measurement::SmoothedEpoch smoothed_at(const Passage& passage, const state::Epoch& epoch) const;
 
-  std::unique_ptr<Navigator> forward_;
+  std::unique_ptr<measurement::Navigator> forward_;
   FgoOptions options_;
   GraphContext context_;  ///< its frame since the first start
-  ImuNoise noise_;
+  imu::ImuNoise noise_;
 
-  std::deque<BatchChain> chains_;            ///< one a start
-  std::deque<Passage> passages_;             ///< one a node, all chains
-  std::optional<Preintegrator> integrator_;  ///< from the newest node on
+  std::deque<BatchChain> chains_;                            ///< one a start
+  std::deque<Passage> passages_;                             ///< one a node, all chains
+  std::optional<preintegration::Preintegrator> integrator_;  ///< from the newest node on
   ImuInterval open_;
-  RecentRates rates_{kLeverArmRateMemory};
-  EarthModel earth_;
+  imu::RecentRates rates_{imu::kLeverArmRateMemory};
+  preintegration::EarthModel earth_;
 };
 
 }  // namespace foucault::fgo

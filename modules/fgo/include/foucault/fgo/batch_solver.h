@@ -15,7 +15,7 @@ namespace foucault::fgo {
 /// A chain of nodes, each joined to the next by an interval: nodes.size() == intervals.size() + 1.
 struct BatchNode {
   int64_t t_ns = 0;
-  NodeState x;  ///< first estimate
+  state::NodeState x;  ///< first estimate
   std::vector<NodeObservation> observations;
 };
 struct BatchChain {
@@ -25,10 +25,10 @@ struct BatchChain {
 };
 
 struct BatchSolution {
-  std::vector<NodeState> x;
-  SlowVector slow;
+  std::vector<state::NodeState> x;
+  state::SlowVector slow;
   /// Of each node and the border, from everything.
-  std::vector<PackedSymmetric> covariance_w;
+  std::vector<state::PackedSymmetric> covariance_w;
 };
 
 /// Minimizes the cost by Gauss and Newton from the nodes' first estimates, by damped steps where a
@@ -38,6 +38,6 @@ struct BatchSolution {
 /// between is eliminated again on the way back. The intervals are used up.
 /// Throws std::runtime_error if the problem cannot be solved.
 BatchSolution solve(BatchChain& chain, const GraphContext& context, const FgoOptions& options,
-                    const ImuNoise& noise);
+                    const imu::ImuNoise& noise);
 
 }  // namespace foucault::fgo

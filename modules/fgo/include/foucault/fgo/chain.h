@@ -16,37 +16,37 @@ namespace foucault::fgo {
 
 /// Rows that say something of a node's tangent and the border's, d: cost |r + S d|^2 / 2.
 struct NodeInformation {
-  StateMatrix S;  ///< upper triangular
-  StateVector r;
+  state::StateMatrix S;  ///< upper triangular
+  state::StateVector r;
 
   explicit NodeInformation(Eigen::Index slow = 0);
 
-  Eigen::Index slow() const { return r.size() - kNodeSize; }
+  Eigen::Index slow() const { return r.size() - state::kNodeSize; }
 
   void add(const StateRows& rows);
   /// `weight` scales the squared cost, as a robust loss does.
   void add(const ObservationRows& rows, double weight = 1);
 
   /// From now on the border's tangent is counted from a point that is `moved` further.
-  void move_border(const SlowVector& moved);
+  void move_border(const state::SlowVector& moved);
 
   /// The d of least cost.
-  StateVector solution() const;
+  state::StateVector solution() const;
 };
 
 /// What an eliminated node is for any value of the next node and the border:
 /// its rows are a + R d + A (d_next, d_border).
 struct Conditional {
-  NodeMatrix R;  ///< upper triangular
-  NodeByState A;
-  NodeVector a;
+  state::NodeMatrix R;  ///< upper triangular
+  state::NodeByState A;
+  state::NodeVector a;
 
   /// Tangent of the eliminated node that minimizes the cost, for that of the next and the border.
-  NodeVector eliminated(const StateVector& next) const;
+  state::NodeVector eliminated(const state::StateVector& next) const;
 
   /// Covariance of the eliminated node and the border, from that of the next node and the border.
   /// A sum of positive terms alone.
-  StateMatrix covariance(const StateMatrix& next) const;
+  state::StateMatrix covariance(const state::StateMatrix& next) const;
 };
 
 /// A node eliminated from the chain, and what it leaves on the next and the border.
@@ -58,11 +58,11 @@ struct Elimination : Conditional {
 Elimination eliminate(const NodeInformation& first, const IntervalRows& interval);
 
 /// At the linearization point (at, slow).
-SquareRootPrior to_prior(const NodeInformation& information, const NodeState& at,
-                         const SlowVector& slow);
+SquareRootPrior to_prior(const NodeInformation& information, const state::NodeState& at,
+                         const state::SlowVector& slow);
 
 /// Of the node and the border.
 /// Throws std::runtime_error if they are not determined.
-StateMatrix covariance(const NodeInformation& information);
+state::StateMatrix covariance(const NodeInformation& information);
 
 }  // namespace foucault::fgo

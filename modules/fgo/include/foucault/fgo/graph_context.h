@@ -10,15 +10,15 @@ namespace foucault::fgo {
 
 /// What all nodes of a graph have in common.
 struct GraphContext {
-  LocalFrame frame{Geodetic{}};  ///< w
-  PreintegrationModel model = PreintegrationModel::full;
-  Layout layout;  ///< its slow blocks are the border
+  geodesy::LocalFrame frame{Geodetic{}};  ///< w
+  preintegration::PreintegrationModel model = preintegration::PreintegrationModel::full;
+  state::Layout layout;  ///< its slow blocks are the border
 };
 
 /// The blocks of a layout as a graph has them: as constants.
-Layout as_constants(const Layout& layout);
+state::Layout as_constants(const state::Layout& layout);
 
 /// Where the IMU's scale factors are among estimates, intervals are integrated at them.
-std::optional<ImuScale> scale_of(const Layout& layout, const SlowVector& slow);
+std::optional<state::ImuScale> scale_of(const state::Layout& layout, const state::SlowVector& slow);
 
 }  // namespace foucault::fgo

@@ -18,28 +18,28 @@ namespace foucault::fgo {
 constexpr int kStateBlockSize = 16;
 using StateBlock = std::array<double, kStateBlockSize>;
 
-NodeState read_block(const double* block);
-void write_block(const NodeState& x, double* block);
+state::NodeState read_block(const double* block);
+void write_block(const state::NodeState& x, double* block);
 
 /// Of a factor's blocks: those of its nodes, and the border's if there is one.
 std::vector<int32_t> block_sizes(int nodes, Eigen::Index slow);
 /// The border among a factor's blocks; of no length if there is none.
-SlowVector read_border(const ceres::CostFunction& factor, double const* const* blocks,
-                       int nodes = 1);
+state::SlowVector read_border(const ceres::CostFunction& factor, double const* const* blocks,
+                              int nodes = 1);
 
 /// d block / d tangent, 16x15, and its left inverse d tangent / d block, 15x16, at `block`.
-Eigen::Matrix<double, kStateBlockSize, kNodeSize, Eigen::RowMajor> plus_jacobian(
+Eigen::Matrix<double, kStateBlockSize, state::kNodeSize, Eigen::RowMajor> plus_jacobian(
     const double* block);
-Eigen::Matrix<double, kNodeSize, kStateBlockSize, Eigen::RowMajor> minus_jacobian(
+Eigen::Matrix<double, state::kNodeSize, kStateBlockSize, Eigen::RowMajor> minus_jacobian(
     const double* block);
 
 /// Writes a Jacobian by a node's tangent, as many rows by 15, as one by its block.
-using NodeColumns =
-    Eigen::Matrix<double, Eigen::Dynamic, kNodeSize, Eigen::ColMajor, kMostSize, kNodeSize>;
+using NodeColumns = Eigen::Matrix<double, Eigen::Dynamic, state::kNodeSize, Eigen::ColMajor,
+                                  state::kMostSize, state::kNodeSize>;
 void write_node_jacobian(const NodeColumns& J, const double* block, double* out);
 /// Writes one by the border.
-using BorderColumns =
-    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMostSize, kMostSlow>;
+using BorderColumns = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor,
+                                    state::kMostSize, state::kMostSlow>;
 void write_border_jacobian(const BorderColumns& J, double* out);
 
 /// What a factor of one node gives Ceres.
@@ -49,8 +49,8 @@ void write_rows(const WhitenedRows<kMostRows>& rows, double const* const* blocks
   Eigen::Map<Eigen::VectorXd>(residual, rows.r.size()) = rows.r;
   if (jacobians == nullptr) return;
   if (jacobians[0] != nullptr)
-    write_node_jacobian(rows.J.template leftCols<kNodeSize>(), blocks[0], jacobians[0]);
-  const Eigen::Index slow = rows.J.cols() - kNodeSize;
+    write_node_jacobian(rows.J.template leftCols<state::kNodeSize>(), blocks[0], jacobians[0]);
+  const Eigen::Index slow = rows.J.cols() - state::kNodeSize;
   if (slow > 0 && jacobians[1] != nullptr)
     write_border_jacobian(rows.J.rightCols(slow), jacobians[1]);
 }
@@ -59,7 +59,7 @@ void write_rows(const WhitenedRows<kMostRows>& rows, double const* const* blocks
 class StateManifold final : public ceres::Manifold {
  public:
   int AmbientSize() const override { return kStateBlockSize; }
-  int TangentSize() const override { return kNodeSize; }
+  int TangentSize() const override { return state::kNodeSize; }
   bool Plus(const double* x, const double* delta, double* x_plus_delta) const override;
   bool PlusJacobian(const double* x, double* jacobian) const override;
   bool Minus(const double* y, const double* x, double* y_minus_x) const override;

@@ -9,9 +9,9 @@ namespace foucault::fgo {
 template <int kMostRows>
 struct WhitenedRows {
   Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMostRows, 1> r;
-  RowsByState<kMostRows> J;
+  state::RowsByState<kMostRows> J;
 };
-using ObservationRows = WhitenedRows<kMostMeasured>;
-using StateRows = WhitenedRows<StateVector::MaxRowsAtCompileTime>;
+using ObservationRows = WhitenedRows<state::kMostMeasured>;
+using StateRows = WhitenedRows<state::StateVector::MaxRowsAtCompileTime>;
 
 }  // namespace foucault::fgo

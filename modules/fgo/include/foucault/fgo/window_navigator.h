@@ -29,22 +29,22 @@ namespace foucault::fgo {
 /// an attitude leaves kSettled, a bias asks for a new integration, or an observation bends with the
 /// border, the window is solved again from there on. After a start or an outage that is the whole
 /// window, in calm times two nodes.
-class WindowNavigator final : public Navigator {
+class WindowNavigator final : public measurement::Navigator {
  public:
   /// Throws UsageError for noise of the IMU that is zero, naming its key; a bias may be constant.
-  WindowNavigator(const FgoOptions& options, PreintegrationModel model, const ImuNoise& noise,
-                  const Layout& layout = {});
+  WindowNavigator(const FgoOptions& options, preintegration::PreintegrationModel model,
+                  const imu::ImuNoise& noise, const state::Layout& layout = {});
   ~WindowNavigator() override;
 
-  void start(const Epoch& initial) override;
+  void start(const state::Epoch& initial) override;
   void propagate(const ImuIncrement& increment) override;
-  Innovation innovation(const Observation& observation) const override;
-  void update(const ObservationPtr& observation) override;
+  state::Innovation innovation(const measurement::Observation& observation) const override;
+  void update(const measurement::ObservationPtr& observation) override;
   /// The window ends here: what it knows becomes the prior of a node at the current time.
-  void loosen(const NodeMatrix& added) override;
-  std::unique_ptr<Navigator> ahead(double scale) const override;
+  void loosen(const state::NodeMatrix& added) override;
+  std::unique_ptr<measurement::Navigator> ahead(double scale) const override;
   void hold() override;
-  Epoch epoch() const override;
+  state::Epoch epoch() const override;
 
   std::size_t nodes() const { return nodes_.size(); }
 
@@ -52,13 +52,13 @@ class WindowNavigator final : public Navigator {
   /// What the past and the node's own observations say of it and the border, as a quadratic form at
   /// a state.
   struct Linearization {
-    NodeState at;
-    SlowVector slow;
+    state::NodeState at;
+    state::SlowVector slow;
     NodeInformation information;
   };
   struct Node {
     int64_t t_ns = 0;
-    NodeState x;
+    state::NodeState x;
     std::deque<ObservationFactor> observations;
     Linearization past;
   };
@@ -67,14 +67,14 @@ class WindowNavigator final : public Navigator {
     Elimination elimination;  ///< of the node before it, at the linearizations of both
   };
   struct Prediction {
-    NodeState x;
-    StateMatrix covariance;  ///< with that of the border
+    state::NodeState x;
+    state::StateMatrix covariance;  ///< with that of the border
   };
 
-  void begin_window(int64_t t_ns, const NodeState& x, const StateMatrix& covariance);
+  void begin_window(int64_t t_ns, const state::NodeState& x, const state::StateMatrix& covariance);
   void begin_interval();
   Prediction prediction() const;
-  void add_node(const NodeState& x, const Preintegration& pre);
+  void add_node(const state::NodeState& x, const preintegration::Preintegration& pre);
   void solve();
   void optimize(std::size_t from);
   void linearize(std::size_t from);
@@ -88,18 +88,18 @@ class WindowNavigator final : public Navigator {
 
   FgoOptions options_;
   GraphContext context_;  ///< its frame since start()
-  ImuNoise noise_;
+  imu::ImuNoise noise_;
   std::unique_ptr<ceres::LossFunction> loss_;
 
-  EarthModel earth_;  ///< of the interval from the newest node on
+  preintegration::EarthModel earth_;  ///< of the interval from the newest node on
   std::deque<Node> nodes_;
-  std::deque<Interval> intervals_;           ///< one less than nodes
-  SlowVector slow_;                          ///< the border
-  SquareRootPrior prior_;                    ///< on the first node, without its observations
-  std::optional<Preintegrator> integrator_;  ///< from the newest node on
-  ImuInterval open_;                         ///< its increments
-  RecentRates rates_{kLeverArmRateMemory};
-  StateMatrix covariance_;  ///< of the newest node and the border
+  std::deque<Interval> intervals_;  ///< one less than nodes
+  state::SlowVector slow_;          ///< the border
+  SquareRootPrior prior_;           ///< on the first node, without its observations
+  std::optional<preintegration::Preintegrator> integrator_;  ///< from the newest node on
+  ImuInterval open_;                                         ///< its increments
+  imu::RecentRates rates_{imu::kLeverArmRateMemory};
+  state::StateMatrix covariance_;  ///< of the newest node and the border
 };
 
 }  // namespace foucault::fgo

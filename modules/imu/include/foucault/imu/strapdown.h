@@ -15,16 +15,16 @@
 namespace foucault::imu {
 
 /// The increment without the biases' share.
-ImuIncrement without_bias(const ImuIncrement& increment, const ImuBias& bias);
+ImuIncrement without_bias(const ImuIncrement& increment, const state::ImuBias& bias);
 /// What is free of biases without the share of the scale factors.
-ImuIncrement without_scale(const ImuIncrement& increment, const ImuScale& scale);
+ImuIncrement without_scale(const ImuIncrement& increment, const state::ImuScale& scale);
 
 /// The state at the end of an increment which begins at state.t_ns.
 /// Both increments are free of biases. `previous` is the one before, for coning and sculling;
 /// a default one (of no length) when there is none.
 /// Second order in dt: rates of the Earth, Coriolis and gravity are those of mid-interval, the
 /// position follows the mean velocity.
-NavState advance(const NavState& state, const ImuIncrement& previous,
-                 const ImuIncrement& increment);
+state::NavState advance(const state::NavState& state, const ImuIncrement& previous,
+                        const ImuIncrement& increment);
 
 }  // namespace foucault::imu

@@ -39,26 +39,26 @@ class AblatedIntegrator {
  public:
   /// x0: the true state at the beginning, in the w of `frame`; its biases are not used.
   /// `previous`: the increment before the first, for coning and sculling.
-  AblatedIntegrator(const NodeState& x0, const LocalFrame& frame, const MotionTerms& terms,
-                    const ImuIncrement& previous);
+  AblatedIntegrator(const state::NodeState& x0, const geodesy::LocalFrame& frame,
+                    const MotionTerms& terms, const ImuIncrement& previous);
 
   /// An increment as long as the previous one.
   void add(const ImuIncrement& increment);
 
-  NodeState state() const;
+  state::NodeState state() const;
 
  private:
   Eigen::Vector3d rotation(const ImuIncrement& increment) const;
   Eigen::Vector3d velocity(const ImuIncrement& increment) const;
   Eigen::Vector3d gravity() const;
 
-  LocalFrame frame_;
+  geodesy::LocalFrame frame_;
   MotionTerms terms_;
-  EarthModel earth_;
+  preintegration::EarthModel earth_;
   Eigen::Vector3d turning_;   ///< omega_ie of the attitude [rad/s]
   Eigen::Vector3d coriolis_;  ///< omega_ie of the Coriolis acceleration [rad/s]
   Eigen::Vector3d way_ = Eigen::Vector3d::Zero();  ///< since the start, which keeps its precision
-  NodeState start_;
+  state::NodeState start_;
   Eigen::Vector3d v_;
   Eigen::Quaterniond q_;
   ImuIncrement previous_;

@@ -13,14 +13,15 @@
 namespace foucault::laboratory {
 
 /// True state at t [s], in the w of `frame`. Good to 1 nm, the rounding of ECEF metres.
-NodeState true_state(const Trajectory& trajectory, const LocalFrame& frame, double t);
+state::NodeState true_state(const simulation::Trajectory& trajectory,
+                            const geodesy::LocalFrame& frame, double t);
 
 /// Exact increments of one interval at any rate that divides a base rate.
 class ExactIncrements {
  public:
   /// Over (begin, begin + length] [s]; `coarsest_rate_hz` tells how far before `begin` they reach.
-  ExactIncrements(const Trajectory& trajectory, double begin, double length, double base_rate_hz,
-                  double coarsest_rate_hz);
+  ExactIncrements(const simulation::Trajectory& trajectory, double begin, double length,
+                  double base_rate_hz, double coarsest_rate_hz);
 
   /// The first one ends at `begin`: for coning and sculling.
   /// Throws std::invalid_argument if the rate does not divide the base rate or is too low.

@@ -21,7 +21,7 @@ enum class FileDamage {
 struct FaultCase {
   std::string name;   ///< "ramp"
   std::string title;  ///< what is injected, in words
-  std::vector<Fault> faults;
+  std::vector<simulation::Fault> faults;
   FileDamage damage = FileDamage::none;
   std::optional<double>
       sigma_m{};  ///< of the fixes, horizontal and twice that down; else the trip's

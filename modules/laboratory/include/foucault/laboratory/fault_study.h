@@ -17,7 +17,7 @@ namespace foucault::laboratory {
 
 /// The trip, common to all cases: city, ADIS16465 at 200 Hz, RTK at 1 Hz, 460 s, of which the first
 /// 40 at rest.
-ScenarioOptions fault_scenario(int64_t seed);
+simulation::ScenarioOptions fault_scenario(int64_t seed);
 
 struct FaultOutcome {
   std::string fault;
@@ -39,14 +39,14 @@ struct FaultOutcome {
 constexpr double kRecoveredSigmas = 10;
 
 /// Errors and messages of one run.
-class FaultObserver : public Sink {
+class FaultObserver : public state::Sink {
  public:
   /// Before anything else.
-  void place(const Mounting& mounting);
+  void place(const state::Mounting& mounting);
   void reference(const ReferencePose& reference) { comparison_->add(reference); }
-  void epoch(const Epoch& epoch) override;
-  void fix(const FixResult& fix) override { metrics_->fix(fix); }
-  void notice(const Notice& notice) override;
+  void epoch(const state::Epoch& epoch) override;
+  void fix(const state::FixResult& fix) override { metrics_->fix(fix); }
+  void notice(const state::Notice& notice) override;
   /// At the end; what condemns the run is said like a notice.
   void judge();
 
@@ -56,11 +56,11 @@ class FaultObserver : public Sink {
   };
   std::vector<Error> errors;
   std::vector<std::string> notices;
-  RunMetrics metrics;  ///< from judge() on
+  evaluation::RunMetrics metrics;  ///< from judge() on
 
  private:
-  std::optional<RunMetricsCollector> metrics_;
-  std::optional<ReferenceComparison> comparison_;
+  std::optional<evaluation::RunMetricsCollector> metrics_;
+  std::optional<evaluation::ReferenceComparison> comparison_;
 };
 
 /// What the study does not know: rawlogs and estimators.
@@ -79,9 +79,9 @@ std::vector<FaultOutcome> run_fault(const FaultCase& fault, const std::vector<st
                                     const FaultProgram& program);
 
 /// A row a case, method and seed.
-TextTable fault_table(const std::vector<FaultOutcome>& outcomes);
+evaluation::TextTable fault_table(const std::vector<FaultOutcome>& outcomes);
 
 /// A row a case, methods side by side, of the first seed.
-TextTable fault_summary(const std::vector<FaultOutcome>& outcomes);
+evaluation::TextTable fault_summary(const std::vector<FaultOutcome>& outcomes);
 
 }  // namespace foucault::laboratory

@@ -11,7 +11,7 @@ namespace foucault::laboratory {
 struct LabMotion {
   std::string name;   ///< for options and files
   std::string title;  ///< for readers
-  ScenarioOptions scenario;
+  simulation::ScenarioOptions scenario;
   double first_start_s = 0;  ///< of the intervals, after the start of the trip
   double period_s = 0;       ///< from one to the next
   int intervals = 10;

@@ -23,12 +23,12 @@ struct StudyResult {
 std::vector<double> shown_durations_s();
 
 /// Position errors of the models at the plan's rate, a row a motion and duration.
-TextTable model_table(const StudyResult& result);
+evaluation::TextTable model_table(const StudyResult& result);
 /// Position, velocity and attitude errors of `full` over the plan's fine duration beside the
 /// increments' discretization, a row a motion and rate.
-TextTable discretization_table(const StudyResult& result);
+evaluation::TextTable discretization_table(const StudyResult& result);
 /// Position error without a term, in sigmas of each IMU's noise, after the shown durations.
-TextTable term_table(const StudyResult& result, const MotionStudy& motion);
+evaluation::TextTable term_table(const StudyResult& result, const MotionStudy& motion);
 
 /// preintegration.csv (a row a motion, group, name, rate, duration and distance), metrics.json.
 void write_laboratory(const StudyResult& result, const std::filesystem::path& folder);

@@ -18,7 +18,7 @@ struct StudyPlan {
   std::vector<double> fine_rates_hz{2000, 4000, 8000};    ///< besides, over fine_duration_s
   double fine_duration_s = 1;
   std::vector<double> origin_distances_km{0, 0.1, 0.3, 1, 3, 10, 30, 100, 300, 600};
-  std::vector<std::string> grades = imu_preset_names();
+  std::vector<std::string> grades = imu::imu_preset_names();
 };
 
 /// Errors against the truth at the end of an interval, 3-D.
@@ -27,7 +27,7 @@ struct MotionError {
   double velocity = 0;  ///< [m/s]
   double attitude = 0;  ///< angle of the rotation between the two [rad]
 };
-MotionError error_of(const NodeState& estimate, const NodeState& truth);
+MotionError error_of(const state::NodeState& estimate, const state::NodeState& truth);
 
 /// Kinds of what is measured.
 enum class LabGroup {
@@ -97,7 +97,7 @@ class PreintegrationStudy {
  private:
   LabMotion motion_;
   StudyPlan plan_;
-  Trajectory trajectory_;
+  simulation::Trajectory trajectory_;
 };
 
 }  // namespace foucault::laboratory

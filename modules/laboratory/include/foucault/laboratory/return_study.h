@@ -34,15 +34,15 @@ struct ReturnOutcome {
 };
 
 struct ReturnMethod {
-  EstimatorFactory make;
+  evaluation::EstimatorFactory make;
   double keep_references_s = 600;
 };
 
 /// What the study does not know: recordings and estimators.
 struct ReturnProgram {
-  OutageOptions outages;  ///< of recordings
-  ImuNoise noise;         ///< of the simulated trip
-  std::function<std::unique_ptr<Source>(const std::string& log)> open;
+  evaluation::OutageOptions outages;  ///< of recordings
+  imu::ImuNoise noise;                ///< of the simulated trip
+  std::function<std::unique_ptr<state::Source>(const std::string& log)> open;
   /// The method of a case, configured by its noise, with the gate or without.
   std::function<ReturnMethod(const ReturnCase& what, bool gate)> method;
 };
@@ -52,9 +52,9 @@ struct ReturnProgram {
 ReturnOutcome study_return(const ReturnCase& what, const ReturnProgram& program);
 
 /// A row a case.
-TextTable return_table(const std::vector<ReturnOutcome>& outcomes);
+evaluation::TextTable return_table(const std::vector<ReturnOutcome>& outcomes);
 
 /// For each length and noise the worst of the methods.
-TextTable return_summary(const std::vector<ReturnOutcome>& outcomes);
+evaluation::TextTable return_summary(const std::vector<ReturnOutcome>& outcomes);
 
 }  // namespace foucault::laboratory

@@ -12,8 +12,8 @@ class GnssPosition final : public Observation {
   explicit GnssPosition(const GnssFix& fix);
 
   std::string_view name() const override { return "gnss_position"; }
-  Linearized linearize(const NavState& x, const Eigen::Vector3d& rate_b,
-                       const Layout& layout) const override;
+  state::Linearized linearize(const state::NavState& x, const Eigen::Vector3d& rate_b,
+                              const state::Layout& layout) const override;
 
  private:
   Geodetic antenna_;

@@ -14,8 +14,8 @@ class GnssVelocity final : public Observation {
   explicit GnssVelocity(const GnssFix& fix);
 
   std::string_view name() const override { return "gnss_velocity"; }
-  Linearized linearize(const NavState& x, const Eigen::Vector3d& rate_b,
-                       const Layout& layout) const override;
+  state::Linearized linearize(const state::NavState& x, const Eigen::Vector3d& rate_b,
+                              const state::Layout& layout) const override;
 
  private:
   Eigen::Vector3d velocity_n_;

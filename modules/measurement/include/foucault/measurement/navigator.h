@@ -19,12 +19,12 @@ class Navigator {
 
   /// (Re)starts from a state with covariance, at initial.t_ns. Slow blocks that it has keep their
   /// values and correlations; those that it lacks start from their prior.
-  virtual void start(const Epoch& initial) = 0;
+  virtual void start(const state::Epoch& initial) = 0;
 
   virtual void propagate(const ImuIncrement& increment) = 0;
 
   /// Prediction error of a measurement at the current time; changes nothing.
-  virtual Innovation innovation(const Observation& observation) const = 0;
+  virtual state::Innovation innovation(const Observation& observation) const = 0;
 
   /// Uses a measurement at the current time.
   virtual void update(const ObservationPtr& observation) = 0;
@@ -32,7 +32,7 @@ class Navigator {
   /// The state may be worse than its covariance says: `added` comes to that of the node's blocks at
   /// the current time, position and velocity in the local NED. Symmetric, positive semidefinite.
   /// Slow blocks keep their values and correlations.
-  virtual void loosen(const NodeMatrix& added) = 0;
+  virtual void loosen(const state::NodeMatrix& added) = 0;
 
   /// One that drives on from the present state by the same method, for trying out what follows,
   /// with the sigmas of all that is estimated `scale` times what they are; correlations stay. This
@@ -43,7 +43,7 @@ class Navigator {
   virtual void hold() = 0;
 
   /// The best estimate at the current time.
-  virtual Epoch epoch() const = 0;
+  virtual state::Epoch epoch() const = 0;
 };
 
 }  // namespace foucault::measurement

@@ -21,8 +21,8 @@ class Observation {
   /// In the local NED of x: r = measured - predicted, H = d predicted / d error, by the blocks of
   /// `layout`, and the covariance R of what was measured. `rate_b`: mean angular rate about the
   /// stamp as the gyroscopes measured it [rad/s], zero if unknown.
-  virtual Linearized linearize(const NavState& x, const Eigen::Vector3d& rate_b,
-                               const Layout& layout) const = 0;
+  virtual state::Linearized linearize(const state::NavState& x, const Eigen::Vector3d& rate_b,
+                                      const state::Layout& layout) const = 0;
 };
 
 using ObservationPtr = std::shared_ptr<const Observation>;

@@ -9,14 +9,14 @@ namespace foucault::measurement {
 
 /// The solution at a node from everything measured.
 struct SmoothedEpoch {
-  NavState state;
-  PackedSymmetric covariance;
+  state::NavState state;
+  state::PackedSymmetric covariance;
   /// The errors it found: in the forward run's state before the node's measurements, and after
   /// them; the same where there are none.
-  NodeVector before = NodeVector::Zero();
-  NodeVector after = NodeVector::Zero();
+  state::NodeVector before = state::NodeVector::Zero();
+  state::NodeVector after = state::NodeVector::Zero();
 
-  Epoch epoch() const { return {state, covariance.full()}; }
+  state::Epoch epoch() const { return {state, covariance.full()}; }
 };
 
 /// A Navigator that leaves nodes on its way, for smoothing once the way is over.

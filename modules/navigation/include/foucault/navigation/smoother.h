@@ -16,35 +16,38 @@ namespace foucault::navigation {
 /// errors found after `begin` and before `end` are interpolated, that of the position to the third
 /// order with those of the velocity. With nodes a second apart it differs from that of a node there
 /// by millimetres after an outage of 60 s. The covariance is interpolated.
-Epoch between(const SmoothedEpoch& begin, const SmoothedEpoch& end, const NavState& forward);
+state::Epoch between(const measurement::SmoothedEpoch& begin, const measurement::SmoothedEpoch& end,
+                     const state::NavState& forward);
 
 /// Runs a recording navigator forward and gives out everything at finish(), epochs from all fixes.
 /// Innovations of fixes are those of the forward run, postfits those of the smoothed solution. With
 /// EpochRate::imu the epochs between nodes are interpolated, see between(); memory then grows by
 /// 200 bytes an epoch, else by what a node takes. finish() throws DataError if a node's solution is
 /// not finite; nothing has been given out then.
-class Smoother : public Estimator {
+class Smoother : public state::Estimator {
  public:
   /// `recording` is what `navigator` leaves; both live as long as this.
-  Smoother(std::unique_ptr<Navigator> navigator, Recording& recording, Aligner aligner,
-           const NavigationRunOptions& options, Sink& sink);
+  Smoother(std::unique_ptr<measurement::Navigator> navigator, measurement::Recording& recording,
+           alignment::Aligner aligner, const NavigationRunOptions& options, state::Sink& sink);
 
   void process(const Measurement& measurement) override { run_.process(measurement); }
   void finish() override;
 
  private:
   /// Keeps what the forward run gives out, in its order.
-  class Keeper : public Sink {
+  class Keeper : public state::Sink {
    public:
-    Keeper(Recording& recording, EpochRate rate, Sink& sink)
+    Keeper(measurement::Recording& recording, EpochRate rate, state::Sink& sink)
         : recording_(recording), rate_(rate), sink_(sink) {}
-    void epoch(const Epoch& epoch) override;
-    void fix(const FixResult& result) override;
-    void observation(const ObservationResult& result) override { kept_.emplace_back(result); }
-    void notice(const Notice& notice) override;
+    void epoch(const state::Epoch& epoch) override;
+    void fix(const state::FixResult& result) override;
+    void observation(const state::ObservationResult& result) override {
+      kept_.emplace_back(result);
+    }
+    void notice(const state::Notice& notice) override;
     bool wants_predictions() const override { return sink_.wants_predictions(); }
     /// Those of the forward run; they do not wait.
-    void prediction(const PredictionResult& result) override { sink_.prediction(result); }
+    void prediction(const state::PredictionResult& result) override { sink_.prediction(result); }
     /// Smooths, once the forward run is over.
     void give_out();
 
@@ -54,17 +57,18 @@ class Smoother : public Estimator {
     };
     struct BetweenEpoch {
       std::size_t node;  ///< the one before
-      NavState forward;
+      state::NavState forward;
     };
     struct NodeFix {
       std::size_t node;
-      FixResult result;
+      state::FixResult result;
     };
 
-    Recording& recording_;
+    measurement::Recording& recording_;
     EpochRate rate_;
-    Sink& sink_;
-    std::deque<std::variant<NodeEpoch, BetweenEpoch, NodeFix, FixResult, ObservationResult, Notice>>
+    state::Sink& sink_;
+    std::deque<std::variant<NodeEpoch, BetweenEpoch, NodeFix, state::FixResult,
+                            state::ObservationResult, state::Notice>>
         kept_;
   };
 
@@ -74,9 +78,11 @@ class Smoother : public Estimator {
 
 /// A smoother on a navigator that is itself the recording: RtsRecorder, BatchRecorder.
 template <class Recorder>
-std::unique_ptr<Estimator> make_smoother(std::unique_ptr<Recorder> recorder, Aligner aligner,
-                                         const NavigationRunOptions& options, Sink& sink) {
-  Recording& recording = *recorder;
+std::unique_ptr<state::Estimator> make_smoother(std::unique_ptr<Recorder> recorder,
+                                                alignment::Aligner aligner,
+                                                const NavigationRunOptions& options,
+                                                state::Sink& sink) {
+  measurement::Recording& recording = *recorder;
   return std::make_unique<Smoother>(std::move(recorder), recording, std::move(aligner), options,
                                     sink);
 }

@@ -28,7 +28,7 @@ struct EarthModel {
 };
 
 /// For an interval that begins at p_w. In `full`, gravity and its gradient are those of p_w.
-EarthModel earth_model(PreintegrationModel model, const LocalFrame& frame,
+EarthModel earth_model(PreintegrationModel model, const geodesy::LocalFrame& frame,
                        const Eigen::Vector3d& p_w);
 
 }  // namespace foucault::preintegration

@@ -11,7 +11,7 @@
 namespace foucault::preintegration {
 
 /// Rows of a node by the axes of the IMU.
-using NodeByAxis = NodeBy<3>;
+using NodeByAxis = state::NodeBy<3>;
 
 /// Residual (49) of an interval from x0 to x1 and its Jacobians by the tangents of both, and by the
 /// scale factors.
@@ -38,31 +38,35 @@ using NodeByAxis = NodeBy<3>;
 ///   dp = pre.dp + sum J.dp d,   dv = pre.dv + sum J.dv d,   dq = pre.dq Exp(sum J.dq d)
 /// The Jacobians are exact derivatives of these expressions; s is not corrected so.
 struct MotionResidual {
-  NodeVector r;
-  NodeMatrix J_x0;
-  NodeMatrix J_x1;
+  state::NodeVector r;
+  state::NodeMatrix J_x0;
+  state::NodeMatrix J_x1;
   NodeByAxis J_gyro_scale = NodeByAxis::Zero();  ///< both zero if the preintegration has no scale
   NodeByAxis J_accel_scale = NodeByAxis::Zero();
 };
 /// Here and below: `scale` counts if the preintegration has one.
-MotionResidual motion_residual(const NodeState& x0, const NodeState& x1, const MotionDeltas& pre,
-                               const EarthModel& earth, const ImuScale& scale = {});
+MotionResidual motion_residual(const state::NodeState& x0, const state::NodeState& x1,
+                               const MotionDeltas& pre, const EarthModel& earth,
+                               const state::ImuScale& scale = {});
 
 /// The residual alone.
-NodeVector motion_residual_value(const NodeState& x0, const NodeState& x1, const MotionDeltas& pre,
-                                 const EarthModel& earth, const ImuScale& scale = {});
+state::NodeVector motion_residual_value(const state::NodeState& x0, const state::NodeState& x1,
+                                        const MotionDeltas& pre, const EarthModel& earth,
+                                        const state::ImuScale& scale = {});
 
 /// Jacobian of the residual by the slow blocks; only the IMU's scale factors are in it.
-NodeBySlow slow_jacobian(const MotionResidual& m, const Layout& layout);
+state::NodeBySlow slow_jacobian(const MotionResidual& m, const state::Layout& layout);
 
 /// The x1 that makes the residual zero.
-NodeState predict(const NodeState& x0, const MotionDeltas& pre, const EarthModel& earth,
-                  const ImuScale& scale = {});
+state::NodeState predict(const state::NodeState& x0, const MotionDeltas& pre,
+                         const EarthModel& earth, const state::ImuScale& scale = {});
 
 /// Covariance of predict(x0) for a covariance of x0 and of slow blocks, constants of the values
 /// `slow`. Precondition: where scale factors are among them the preintegration has a scale.
-StateMatrix predict_covariance(const NodeState& x0, const NodeState& x1, const Preintegration& pre,
-                               const EarthModel& earth, const StateMatrix& covariance_x0,
-                               const Layout& layout = {}, const SlowVector& slow = SlowVector(0));
+state::StateMatrix predict_covariance(const state::NodeState& x0, const state::NodeState& x1,
+                                      const Preintegration& pre, const EarthModel& earth,
+                                      const state::StateMatrix& covariance_x0,
+                                      const state::Layout& layout = {},
+                                      const state::SlowVector& slow = state::SlowVector(0));
 
 }  // namespace foucault::preintegration

@@ -37,8 +37,8 @@ struct MotionDeltas {
   Eigen::Vector3d dp = Eigen::Vector3d::Zero();            ///< integral of dv [m]; (20)
   Eigen::Vector3d idp = Eigen::Vector3d::Zero();           ///< integral of dp [m s]
   Eigen::Vector3d iidp = Eigen::Vector3d::Zero();          ///< integral of idp [m s^2]
-  ImuBias bias;                                            ///< at which it was integrated; (37)
-  std::optional<ImuScale> scale;  ///< at which it was integrated; none: taken as right
+  state::ImuBias bias;                                     ///< at which it was integrated; (37)
+  std::optional<state::ImuScale> scale;  ///< at which it was integrated; none: taken as right
   /// Share that is left at t_end of what the true bias at t_begin has beyond `bias`. 1 in (49); the
   /// processes of MarkovBias make it exp(-T / tau). It is the deviation from the estimate that
   /// decays, as in a Kalman filter, and not the estimate: that holds the turn-on value, which
@@ -55,7 +55,7 @@ struct MotionDeltas {
 
 struct Preintegration : MotionDeltas {
   /// Covariance of the errors, (43); blocks of a node, bias rows: change over the interval.
-  NodeMatrix covariance = NodeMatrix::Zero();
+  state::NodeMatrix covariance = state::NodeMatrix::Zero();
 };
 
 /// Accumulates increments into a Preintegration, one at a time.
@@ -75,9 +75,9 @@ class Preintegrator {
  public:
   /// `previous`: the increment before the first, for coning and sculling. `scale`: at which to
   /// integrate, and whether there are to be Jacobians by it.
-  Preintegrator(const ImuNoise& noise, const ImuBias& bias, int64_t t_begin_ns,
+  Preintegrator(const imu::ImuNoise& noise, const state::ImuBias& bias, int64_t t_begin_ns,
                 const std::optional<ImuIncrement>& previous = std::nullopt,
-                const std::optional<ImuScale>& scale = std::nullopt);
+                const std::optional<state::ImuScale>& scale = std::nullopt);
 
   /// Precondition: begins where the last one ended.
   /// Throws std::invalid_argument if it does not, or if it is empty.
@@ -90,7 +90,7 @@ class Preintegrator {
 
   double dt() const { return m_.dt; }
   int64_t t_end_ns() const { return m_.t_end_ns; }
-  const ImuBias& bias() const { return m_.bias; }
+  const state::ImuBias& bias() const { return m_.bias; }
   const std::optional<ImuIncrement>& previous() const { return previous_; }
 
  private:
@@ -112,7 +112,7 @@ class Preintegrator {
   void set_bias_decay(double dt);
 
   void put_jacobians(MotionDeltas& out) const;
-  void put_covariance(NodeMatrix& S) const;
+  void put_covariance(state::NodeMatrix& S) const;
 
   /// Blocks of the covariance that are not zero; e = eps, g = gyro bias, a = accel bias.
   struct Blocks {
@@ -121,11 +121,11 @@ class Preintegrator {
     Blocks();
   };
 
-  ImuNoise noise_;
+  imu::ImuNoise noise_;
   double gyro_bias_power_, accel_bias_power_;
   std::optional<ImuIncrement> previous_;
   MotionDeltas m_;  ///< until result() its Jacobians have eps for dq, and no gain in the columns
-  ImuScale gain_{Eigen::Vector3d::Ones(), Eigen::Vector3d::Ones()};  ///< 1 / (1 + scale)
+  state::ImuScale gain_{Eigen::Vector3d::Ones(), Eigen::Vector3d::Ones()};  ///< 1 / (1 + scale)
   Eigen::Matrix3d C_ = Eigen::Matrix3d::Identity();
   Blocks cov_;
   double bias_decay_dt_ = -1;  ///< sample length for which the decays were computed

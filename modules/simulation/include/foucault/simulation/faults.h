@@ -58,16 +58,17 @@ struct Fault {
 /// alone. The measurements come in the order in which a program that sorts by stamps gives them,
 /// except where a fault is one of the order.
 /// Memory: the whole recording, 100 bytes a measurement.
-class FaultySource : public Source {
+class FaultySource : public state::Source {
  public:
-  FaultySource(std::unique_ptr<Source> source, const std::vector<Fault>& faults, int64_t seed);
+  FaultySource(std::unique_ptr<state::Source> source, const std::vector<Fault>& faults,
+               int64_t seed);
 
   std::optional<Measurement> next() override;
-  const Mounting& mounting() const override { return source_->mounting(); }
+  const state::Mounting& mounting() const override { return source_->mounting(); }
   double progress() const override;
 
  private:
-  std::unique_ptr<Source> source_;
+  std::unique_ptr<state::Source> source_;
   std::vector<Measurement> measurements_;
   std::size_t next_ = 0;
 };

@@ -21,7 +21,7 @@ ImuIncrement exact_increment(const Trajectory& trajectory, const Eigen::Quaterni
                              int64_t start_ns, int64_t t_begin_ns, int64_t t_end_ns);
 
 /// The rates of a sample with `interval_mean` meaning: increment / dt, stamp at the end.
-ImuSample interval_mean_sample(const ImuIncrement& increment);
+imu::ImuSample interval_mean_sample(const ImuIncrement& increment);
 
 /// Errors of an IMU on top of exact increments: measured = (1 + scale) * exact + bias * dt + noise.
 /// The bias is a constant turn-on value plus a first-order Gauss-Markov process in its steady
@@ -31,13 +31,13 @@ ImuSample interval_mean_sample(const ImuIncrement& increment);
 class ImuErrors {
  public:
   /// scale_sigma: of each axis, a pure number.
-  ImuErrors(const ImuNoise& noise, double scale_sigma, int64_t seed);
+  ImuErrors(const imu::ImuNoise& noise, double scale_sigma, int64_t seed);
 
   /// Increments must come without holes, also those that are not given out.
   ImuIncrement apply(const ImuIncrement& exact);
 
   /// True bias at the end of the last increment, the scale factor not included.
-  ImuBias bias() const;
+  state::ImuBias bias() const;
 
  private:
   /// One triad of sensors.

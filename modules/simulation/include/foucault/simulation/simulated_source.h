@@ -29,23 +29,23 @@ class StampSequence {
 /// order of Measurement, from the start to duration_s after it. Stamps are multiples of 100 ns, so
 /// that a rawlog keeps them exactly.
 /// Memory: the control points of the trajectory, about 100 bytes a second, and no more.
-class SimulatedSource : public Source {
+class SimulatedSource : public state::Source {
  public:
   /// Throws UsageError for options that make no sense together.
-  SimulatedSource(const ScenarioOptions& options, const ImuNoise& noise);
+  SimulatedSource(const ScenarioOptions& options, const imu::ImuNoise& noise);
 
   std::optional<Measurement> next() override;
-  const Mounting& mounting() const override { return mounting_; }
+  const state::Mounting& mounting() const override { return mounting_; }
   double progress() const override;
 
   const Trajectory& trajectory() const { return trajectory_; }
 
   /// The true state at a stamp within the recording, for consistency tests: position, velocity,
   /// q_n_b, and the bias at the end of the last increment given out. Covariance zero.
-  Epoch truth(int64_t t_ns) const;
+  state::Epoch truth(int64_t t_ns) const;
 
   /// True biases at the end of the last increment given out.
-  ImuBias true_bias() const { return errors_.bias(); }
+  state::ImuBias true_bias() const { return errors_.bias(); }
 
  private:
   struct Stream {
@@ -63,7 +63,7 @@ class SimulatedSource : public Source {
 
   ScenarioOptions options_;
   int64_t start_ns_, end_ns_;
-  Mounting mounting_;
+  state::Mounting mounting_;
   Trajectory trajectory_;
   GnssSimulator gnss_;
   ImuErrors errors_;

@@ -17,8 +17,8 @@ struct SearchPlan {
   std::vector<std::string> logs;
   std::size_t shifts = 1;  ///< of the outages: as many runs a log
   /// The runs of a method on a log with the configuration of a point, one a shift.
-  std::function<std::vector<ExperimentRun>(const std::string& log, const std::string& method,
-                                           const GridPoint& point)>
+  std::function<std::vector<evaluation::ExperimentRun>(
+      const std::string& log, const std::string& method, const GridPoint& point)>
       runs;
   int threads = 1;
   /// Takes the part done of a method.

@@ -30,7 +30,7 @@ void for_each_pair(const ParameterGrid& grid, Use use) {
 std::string map_name(const std::string& method, const std::vector<std::string>& keys);
 
 /// The chosen values of all methods.
-TextTable best_table(const TuningResult& result);
+evaluation::TextTable best_table(const TuningResult& result);
 
 /// Where a wider grid might hold something better.
 std::vector<std::string> edge_lines(const TuningResult& result);
