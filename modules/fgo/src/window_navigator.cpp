@@ -19,6 +19,9 @@ constexpr double kSettled = 2e-4;  // [rad]
 /// Nor does a residual count that is off by less. [sigma]
 constexpr double kSettledResidual = 0.05;
 
+/// Each round solves a longer part of the window; the whole of it within a few.
+constexpr int kRounds = 8;
+
 }  // namespace
 
 WindowNavigator::WindowNavigator(const FgoOptions& options,
@@ -153,7 +156,7 @@ void WindowNavigator::solve() {
     optimize(from);
     linearize(from);
     carry_back(from);
-    if (round == options_.most_rounds) break;
+    if (round == kRounds) break;
     from = first_unsettled();
   }
   const StageTimer timer(Stage::covariance);

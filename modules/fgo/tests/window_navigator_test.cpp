@@ -265,34 +265,6 @@ TEST_F(WindowNavigatorTest, ALargeBiasIsIntegratedAnew) {
   EXPECT_LT(e.head<3>().norm(), 0.1);
 }
 
-/// Where the rounds of an update do not suffice, the next update goes on: what the last round finds
-/// to be integrated again is not lost.
-TEST_F(WindowNavigatorTest, WhatOneRoundLeavesTheNextUpdateDoes) {
-  std::vector<state::Epoch> ends;
-  for (const int rounds : {1, 8}) {
-    reseed(8);
-    FgoOptions options = window_of(1e9);
-    options.most_rounds = rounds;
-    WindowNavigator navigator(options, preintegration::PreintegrationModel::refined, test_noise());
-    state::Epoch begin = initial(0.1);
-    state::part(begin.covariance, state::block::gyro_bias, state::block::gyro_bias) =
-        0.0025 * Matrix3d::Identity();
-    navigator.start(begin);
-    for (int second = 1; second <= 20; ++second) {
-      for (int64_t t = (second - 1) * 100LL; t < second * 100LL; ++t) {
-        ImuIncrement increment = noisy_increment(t * 10'000'000, (t + 1) * 10'000'000);
-        increment.dtheta_b += Vector3d(0.05, -0.03, 0.04) * increment.dt();
-        navigator.propagate(increment);
-      }
-      navigator.update(measurement::gnss_position(fix_at(second, 0.02)));
-    }
-    ends.push_back(navigator.epoch());
-  }
-  const state::NodeVector sigma = ends[1].covariance.diagonal().cwiseSqrt();
-  const state::NodeVector difference = (error(ends[0]) - error(ends[1])).cwiseQuotient(sigma);
-  EXPECT_LT(difference.cwiseAbs().maxCoeff(), 0.1) << difference.transpose();
-}
-
 TEST_F(WindowNavigatorTest, OneAheadForeseesWhatItselfWillSay) {
   WindowNavigator navigator(window_of(10), preintegration::PreintegrationModel::refined,
                             test_noise());

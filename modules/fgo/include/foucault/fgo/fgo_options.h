@@ -15,9 +15,6 @@ class FgoOptions : public Configurable {
   double robust_scale = 2;      ///< where the loss turns, in sigmas
   int64_t max_iterations = 8;   ///< of the solver, an epoch
 
-  /// Each round of an update solves a longer part of the window; the whole of it within a few.
-  int most_rounds = 8;  // not of the configuration
-
   void fields(ConfigFields& f) override;
 };
 
