@@ -65,7 +65,7 @@ void study_returns(const ReturnStudyOptions& given, Call& call) {
       cases.size(), options.jobs,
       [&](std::size_t i, const evaluation::TaskProgress& progress) {
         progress(0);
-        outcomes[i] = laboratory::study_return(cases[i], settings);
+        outcomes[i] = study_return(cases[i], settings);
       },
       call.console.progress_of("returns"));
   exports::write_text_file(directory.staging() / "returns.csv",

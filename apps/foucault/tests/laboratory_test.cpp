@@ -36,10 +36,10 @@ TEST(LaboratoryJob, AReturnOnARecording) {
   settings.outages.first_s = 100;
   settings.outages.shifts_s = {0};
   const laboratory::ReturnOutcome outcome =
-      laboratory::study_return({folder / "trip.rawlog", 1, 10, "ekf"}, settings);
+      study_return({folder / "trip.rawlog", 1, 10, "ekf"}, settings);
   EXPECT_EQ(outcome.error, "");
   EXPECT_EQ(outcome.outages, 1);
-  EXPECT_EQ(laboratory::study_return({folder / "none", 1, 10, "ekf"}, settings).outages, 0);
+  EXPECT_EQ(study_return({folder / "none", 1, 10, "ekf"}, settings).outages, 0);
 }
 
 TEST(LaboratoryPage, CurvesOfEveryMotion) {
