@@ -12,6 +12,8 @@ namespace foucault::rawlog {
 struct GzClose {
   void operator()(gzFile file) const { gzclose(file); }
 };
+/// Of the buffers of zlib [bytes].
+inline constexpr unsigned kGzipBuffer = 1U << 17;
 using GzHandle = std::unique_ptr<gzFile_s, GzClose>;
 
 /// Throws DataError if there is no such file, or it is a directory or empty.

@@ -14,8 +14,6 @@ namespace foucault::rawlog {
 
 namespace {
 
-constexpr unsigned kBufferSize = 1U << 17;
-
 /// zlib closes the descriptor that it is given.
 gzFile open_copy(int descriptor) {
   const int copy = fcntl(descriptor, F_DUPFD_CLOEXEC, 0);
@@ -30,13 +28,13 @@ gzFile open_copy(int descriptor) {
 GzWriteArchive::GzWriteArchive(const PendingFile& file)
     : path_(file.path()), file_(open_copy(file.descriptor())) {
   if (!file_) fail();
-  gzbuffer(file_.get(), kBufferSize);
-  buffer_.reserve(kBufferSize);
+  gzbuffer(file_.get(), kGzipBuffer);
+  buffer_.reserve(kGzipBuffer);
 }
 
 void GzWriteArchive::put(const mrpt::serialization::CSerializable& object) {
   WriteObject(object);
-  if (buffer_.size() >= kBufferSize) flush();
+  if (buffer_.size() >= kGzipBuffer) flush();
 }
 
 void GzWriteArchive::flush() {

@@ -18,8 +18,6 @@ using rawlog::TextTable;
 
 namespace {
 
-constexpr int kNanosecondDecimals = 9;
-
 TextTable open_table(const std::string& path) {
   return TextTable(path, TextTable::Separator::space, "#%");
 }
@@ -71,9 +69,9 @@ class WeekClock {
   int64_t last_ns_;
 };
 
-class ImuReader : public RecordReader {
+class I2navImu : public RecordReader {
  public:
-  ImuReader(const std::string& path, WeekClock clock) : table_(open_table(path)), clock_(clock) {}
+  I2navImu(const std::string& path, WeekClock clock) : table_(open_table(path)), clock_(clock) {}
 
   const TextTable& table() const override { return table_; }
 
@@ -151,9 +149,9 @@ class ImuReader : public RecordReader {
   std::deque<Record> ready_;
 };
 
-class GnssReader : public RecordReader {
+class I2navGnss : public RecordReader {
  public:
-  GnssReader(const std::string& path, WeekClock clock, FixQuality quality)
+  I2navGnss(const std::string& path, WeekClock clock, FixQuality quality)
       : table_(open_table(path)), clock_(clock), quality_(quality) {}
 
   const TextTable& table() const override { return table_; }
@@ -193,9 +191,9 @@ class GnssReader : public RecordReader {
   size_t columns_ = 0;
 };
 
-class ReferenceReader : public RecordReader {
+class I2navReference : public RecordReader {
  public:
-  explicit ReferenceReader(const std::string& path) : table_(open_table(path)) {}
+  explicit I2navReference(const std::string& path) : table_(open_table(path)) {}
 
   const TextTable& table() const override { return table_; }
 
@@ -255,9 +253,9 @@ WeekClock clock_of(const I2navImport& options) {
 ImportSummary import_i2nav(const I2navImport& options) {
   const WeekClock clock = clock_of(options);
   rawlog::ImportInputs inputs;
-  inputs.imu = std::make_unique<ImuReader>(options.imu, clock);
-  inputs.gnss = std::make_unique<GnssReader>(options.gnss, clock, options.quality);
-  if (options.reference) inputs.reference = std::make_unique<ReferenceReader>(*options.reference);
+  inputs.imu = std::make_unique<I2navImu>(options.imu, clock);
+  inputs.gnss = std::make_unique<I2navGnss>(options.gnss, clock, options.quality);
+  if (options.reference) inputs.reference = std::make_unique<I2navReference>(*options.reference);
   inputs.lever_arm_v = options.lever_arm;
   return rawlog::run_import(options, std::move(inputs));
 }

@@ -21,8 +21,6 @@ using rawlog::TextTable;
 
 namespace {
 
-constexpr int kNanosecondDecimals = 9;
-
 /// What the comment lines at the head of a .pos file say.
 struct PosHeader {
   std::map<std::string, size_t> columns;  ///< name without unit -> column of the rows

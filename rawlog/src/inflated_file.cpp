@@ -16,14 +16,14 @@ namespace foucault::rawlog {
 namespace {
 
 constexpr size_t kInputSize = size_t{1} << 16;
-constexpr size_t kBufferSize = 3 * InflatedFile::kWindow;
+constexpr size_t kInflatedSize = 3 * InflatedFile::kWindow;
 constexpr int kGzipOnly = 16 + MAX_WBITS;
 constexpr unsigned char kGzipMagic[] = {0x1F, 0x8B};
 
 }  // namespace
 
 InflatedFile::InflatedFile(const std::string& path)
-    : path_(path), input_(kInputSize), buffer_(kBufferSize) {
+    : path_(path), input_(kInputSize), buffer_(kInflatedSize) {
   check_readable(path);
   file_.reset(std::fopen(path.c_str(), "rb"));
   if (!file_) {

@@ -58,11 +58,6 @@ bool label_fits(const std::string& wanted, std::string_view label) {
   return wanted.empty() || wanted == label;
 }
 
-bool finite(const Geodetic& position) {
-  return std::isfinite(position.latitude) && std::isfinite(position.longitude) &&
-         std::isfinite(position.height);
-}
-
 /// A velocity that is no number does not spoil a position.
 bool velocity_finite(const GnssFix& fix) {
   return fix.velocity_n->allFinite() && fix.velocity_covariance.allFinite();
@@ -401,7 +396,8 @@ void RawlogSource::Impl::take_gps(const mrpt::obs::CObservationGPS& gps, int64_t
   std::optional<GnssFix> fix = rawlog::decode_fix(gps, t_ns);
   if (!fix) return skip(kGps, "no position");
   fix->p_b_a = lever_arm_to(rawlog::from_mrpt(gps.sensorPose));
-  if (!finite(fix->antenna) || !fix->position_covariance.allFinite() || !fix->p_b_a.allFinite()) {
+  if (!is_finite(fix->antenna) || !fix->position_covariance.allFinite() ||
+      !fix->p_b_a.allFinite()) {
     return skip_noted(kGps, kNotFinite, t_ns);
   }
   if (!is_position(fix->antenna)) {
@@ -421,7 +417,7 @@ void RawlogSource::Impl::take_reference(const ReferencePose& pose,
   const rawlog::SensorPose from = rawlog::from_mrpt(sensor_pose);
   const ReferencePose of_imu = rawlog::moved_to_imu(pose, from, overview_.imu.p_v_s);
   reference_arm_v_ = overview_.imu.p_v_s - from.p_v_s;
-  if (!finite(of_imu.position)) return skip_noted(type, kNotFinite, pose.t_ns);
+  if (!is_finite(of_imu.position)) return skip_noted(type, kNotFinite, pose.t_ns);
   if (add(of_imu)) ++counts_.references;
 }
 

@@ -7,6 +7,7 @@
 
 #include "files.h"
 #include "foucault/core/error.h"
+#include "foucault/core/position.h"
 #include "foucault/core/time.h"
 #include "gz_archive.h"
 #include "mrpt_convert.h"
@@ -18,11 +19,6 @@ int64_t stamp(const Record& record) {
 }
 
 namespace {
-
-bool finite(const Geodetic& position) {
-  return std::isfinite(position.latitude) && std::isfinite(position.longitude) &&
-         std::isfinite(position.height);
-}
 
 void require_stamp(int64_t t_ns) {
   if (rawlog::in_range_of_stamps(t_ns)) return;
@@ -77,7 +73,7 @@ class RawlogWriter::Impl {
 
   void write(const GnssFix& fix) {
     require_stamp(fix.t_ns);
-    require(finite(fix.antenna) && fix.position_covariance.allFinite() &&
+    require(is_finite(fix.antenna) && fix.position_covariance.allFinite() &&
                 (!fix.velocity_n ||
                  (fix.velocity_n->allFinite() && fix.velocity_covariance.allFinite())) &&
                 fix.p_b_a.allFinite(),
@@ -91,7 +87,7 @@ class RawlogWriter::Impl {
 
   void write(const ReferencePose& pose) {
     require_stamp(pose.t_ns);
-    require(finite(pose.position), "the reference pose", pose.t_ns);
+    require(is_finite(pose.position), "the reference pose", pose.t_ns);
     reference_.timestamp = rawlog::to_mrpt(pose.t_ns);
     reference_.originalReceivedTimestamp = reference_.timestamp;
     rawlog::encode_reference(pose, reference_);

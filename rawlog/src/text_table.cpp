@@ -13,7 +13,6 @@ namespace foucault::rawlog {
 
 namespace {
 
-constexpr unsigned kBufferSize = 1U << 17;
 constexpr size_t kLongestLine = 1U << 16;
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
@@ -115,7 +114,7 @@ TextTable::TextTable(std::string path, Separator separator, std::string comment_
       comment_signs_(std::move(comment_signs)),
       file_(open_for_reading(path_)),
       buffer_(kLongestLine, '\0') {
-  gzbuffer(file_.get(), kBufferSize);
+  gzbuffer(file_.get(), kGzipBuffer);
   std::error_code error;
   const auto size = std::filesystem::file_size(path_, error);
   file_size_ = error ? 0 : static_cast<double>(size);

@@ -17,6 +17,9 @@ class RowError : public DataError {
   using DataError::DataError;
 };
 
+/// Decimals of seconds that are read as nanoseconds, see Row::scaled().
+inline constexpr int kNanosecondDecimals = 9;
+
 /// A row of a text file, cut into fields. Views last until the next row is read.
 class Row {
  public:

@@ -17,10 +17,8 @@ constexpr double kLongestChord = 2.5;     // [s]
 constexpr double kVelocitySpacing = 0.5;  // [s], between courses by velocity
 constexpr std::size_t kCourses = 3;       // that must agree
 constexpr std::size_t kLongestRun = 10;
-constexpr double kShortestRun = 2.8;  // [s]: three ways of a second
-constexpr double kAgreement = 4;      // chi-square per degree of freedom
-/// The vehicle's point without sideslip (a car's rear axle) lies within this of the IMU.
-constexpr double kSideslipArm = 1.5;          // [m]
+constexpr double kShortestRun = 2.8;          // [s]: three ways of a second
+constexpr double kAgreement = 4;              // chi-square per degree of freedom
 constexpr double kCrabSigma = 0.3 * kDegree;  // [rad], of a single course
 
 Eigen::Vector3d forward_l(const LevelAttitude& attitude) {

@@ -17,6 +17,9 @@ struct LevelAttitude {
   Eigen::Vector3d forward_b = Eigen::Vector3d::UnitX();  ///< the vehicle's forward axis
 };
 
+/// The vehicle's point without sideslip (a car's rear axle) lies within this of the IMU.
+constexpr double kSideslipArm = 1.5;  // [m]
+
 /// Course criteria.
 struct CourseLimits {
   double min_speed = 3;           ///< [m/s]

@@ -24,7 +24,6 @@ constexpr std::ptrdiff_t kFewestFixes = 4;      // of 3 parameters an axis
 constexpr double kLatency = 0.1;                // [s]: velocities lag, IMU stamps are late
 constexpr double kForceSigma = 0.05;            // [m/s^2]: what latency and changing forces leave
 constexpr double kLevelChange = 1.0 * kDegree;  // of roll and pitch over a stretch
-constexpr double kSideslipArm = 1.5;            // [m], see CourseFinder
 constexpr double kLargestLevelSigma = 3 * kDegree;
 constexpr double kLargestExcess = 0.5;      // [m/s^2], of the specific force's length
 constexpr double kWorstInnovations = 9;     // mean square over sigma

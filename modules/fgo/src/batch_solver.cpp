@@ -27,16 +27,10 @@ constexpr double kCostShareLeft = 1e-7;
 /// A thousandth of a sigma.
 constexpr double kCostLeft = 1e-6;
 
-/// Where attitudes are off by degrees while velocity increments are known to 1e-4 m/s, the valley
-/// of the cost is curved, a plain step climbs out of it, and the radius must come down to the
-/// valley's.
-constexpr double kDamped = 1e4;
-constexpr int kDampedIterations = 10;  // times those of the options
-
 /// Levenberg and Marquardt's radius, as Ceres has it: what is known of a column by itself, over it,
 /// is added to what is known of all.
 struct TrustRegion {
-  double radius = kDamped;
+  double radius = kDampedRadius;
   double shrink = 2;
 
   void adapt(bool better, double share) {

@@ -11,12 +11,6 @@ namespace {
 
 /// Radius of the trust region: the start is good most of the time, and a plain step the best.
 constexpr double kGaussNewton = 1e16;
-/// Where attitudes are off by degrees while velocity increments are known to 1e-4 m/s, the valley
-/// of the cost is curved, a plain step climbs out of it, and the radius must come down to the
-/// valley's.
-constexpr double kDamped = 1e4;
-constexpr int kDampedIterations = 10;  // times those of the options
-
 /// Up to so many nodes a dense factorization is the faster one.
 constexpr std::size_t kDenseNodes = 4;
 
@@ -96,7 +90,7 @@ void ChainProblem::optimize(const FgoOptions& options) {
   ceres::Solve(solver, &problem_, &summary);
   if (summary.termination_type == ceres::NO_CONVERGENCE) {
     solver.callbacks.clear();  // of a damped step the model holds, too
-    solver.initial_trust_region_radius = kDamped;
+    solver.initial_trust_region_radius = kDampedRadius;
     solver.max_num_iterations *= kDampedIterations;
     ceres::Solve(solver, &problem_, &summary);
   }

@@ -1,12 +1,11 @@
 #include "sound_epoch.h"
 
-#include <cmath>
+#include "foucault/core/position.h"
 
 namespace foucault::navigation {
 
 std::optional<std::string> unsound_part(const state::Epoch& epoch) {
-  const Geodetic& p = epoch.position;
-  if (!std::isfinite(p.latitude + p.longitude + p.height)) return "position";
+  if (!is_finite(epoch.position)) return "position";
   if (!epoch.velocity_n.allFinite()) return "velocity";
   if (!epoch.q_n_b.coeffs().allFinite()) return "attitude";
   if (!epoch.bias.gyro.allFinite() || !epoch.bias.accel.allFinite()) return "IMU biases";

@@ -28,8 +28,6 @@ constexpr double kShortestFlight = 600;         ///< a shorter one does not land
 constexpr double kFirstTurnAfter = 100;         ///< [s]
 constexpr double kMaxDeviation = 40 * kDegree;  ///< beyond, turns lead back to the first heading
 
-double phase(Draws& draws) { return draws.uniform(0, 2 * kPi); }
-
 double toward(double value, double target, double step) {
   return value + std::clamp(target - value, -step, step);
 }
@@ -57,10 +55,11 @@ Airliner::Airliner(const ScenarioOptions& options)
       roll_noise_({}),
       pitch_noise_({}) {
   Draws draws(options.seed, RandomStream::surface);
-  bumps_ = SineSum({{0.2, 900, phase(draws)}, {0.3, 2900, phase(draws)}});
-  roll_noise_ = SineSum({{0.3 * kDegree, 1100, phase(draws)}, {0.3 * kDegree, 2300, phase(draws)}});
+  bumps_ = SineSum({{0.2, 900, draws.phase()}, {0.3, 2900, draws.phase()}});
+  roll_noise_ =
+      SineSum({{0.3 * kDegree, 1100, draws.phase()}, {0.3 * kDegree, 2300, draws.phase()}});
   pitch_noise_ =
-      SineSum({{0.1 * kDegree, 900, phase(draws)}, {0.15 * kDegree, 3100, phase(draws)}});
+      SineSum({{0.1 * kDegree, 900, draws.phase()}, {0.15 * kDegree, 3100, draws.phase()}});
 }
 
 bool Airliner::descends() const {

@@ -16,8 +16,6 @@ constexpr double kRollPerLateral = -0.4 * kDegree;   ///< body leans out of the 
 constexpr double kPitchPerForward = 0.35 * kDegree;  ///< nose up when it accelerates
 constexpr double kSuspensionLag = 0.3;               ///< [s]
 
-double phase(Draws& draws) { return draws.uniform(0, 2 * kPi); }
-
 /// Speed at which a section is driven [m/s].
 double section_speed(const RoadSection& section) {
   const double curvature = section.length > 0 ? 2 * std::abs(section.turn) / section.length : 0;
@@ -110,10 +108,11 @@ RoadVehicle::RoadVehicle(const RoadStyle& style, const ScenarioOptions& options)
       roll_noise_({}),
       pitch_noise_({}) {
   Draws draws(options.seed, RandomStream::surface);
-  hills_ = SineSum({{4.5, 2500, phase(draws)}, {2.5, 1200, phase(draws)}, {1, 600, phase(draws)}});
-  bumps_ = SineSum({{0.004, 17, phase(draws)}, {0.006, 31, phase(draws)}});
-  roll_noise_ = SineSum({{0.15 * kDegree, 23, phase(draws)}, {0.3 * kDegree, 190, phase(draws)}});
-  pitch_noise_ = SineSum({{0.1 * kDegree, 19, phase(draws)}, {0.15 * kDegree, 47, phase(draws)}});
+  hills_ =
+      SineSum({{4.5, 2500, draws.phase()}, {2.5, 1200, draws.phase()}, {1, 600, draws.phase()}});
+  bumps_ = SineSum({{0.004, 17, draws.phase()}, {0.006, 31, draws.phase()}});
+  roll_noise_ = SineSum({{0.15 * kDegree, 23, draws.phase()}, {0.3 * kDegree, 190, draws.phase()}});
+  pitch_noise_ = SineSum({{0.1 * kDegree, 19, draws.phase()}, {0.15 * kDegree, 47, draws.phase()}});
   look_ahead();
 }
 

@@ -7,6 +7,10 @@
 
 namespace foucault {
 
+inline bool is_finite(const Geodetic& position) {
+  return std::isfinite(position.latitude + position.longitude + position.height);
+}
+
 /// Whether a receiver can have been there: finite, on the Earth or up to 100 km above or below its
 /// ellipsoid, where space begins, and not at latitude and longitude zero, which receivers write
 /// while they have no fix.

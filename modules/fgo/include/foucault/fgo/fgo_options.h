@@ -18,4 +18,10 @@ class FgoOptions : public Configurable {
   void fields(ConfigFields& f) override;
 };
 
+/// Radius of the first damped step, and how many times the options' iterations they may take. Where
+/// attitudes are off by degrees while velocity increments are known to 1e-4 m/s, the valley of the
+/// cost is curved, a plain step climbs out of it, and the radius must come down to the valley's.
+inline constexpr double kDampedRadius = 1e4;
+inline constexpr int kDampedIterations = 10;
+
 }  // namespace foucault::fgo

@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <random>
 
+#include "foucault/core/constants.h"
+
 namespace foucault::simulation {
 
 /// What a stream of random numbers is for. Each has a generator of its own, so that switching one
@@ -32,6 +34,7 @@ class Draws {
   double normal() { return normal_(engine_); }  ///< mean 0, sigma 1
   Eigen::Vector3d normal3();                    ///< three of them
   double uniform(double low, double high);      ///< in [low, high)
+  double phase() { return uniform(0, 2 * kPi); }
   bool happens(double probability) { return uniform(0, 1) < probability; }
   double sign() { return happens(0.5) ? 1.0 : -1.0; }
 
