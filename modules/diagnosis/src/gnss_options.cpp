@@ -1,5 +1,9 @@
 #include "foucault/diagnosis/gnss_options.h"
 
+#include <Eigen/Cholesky>
+
+#include "foucault/core/position.h"
+
 namespace foucault::diagnosis {
 
 void GnssOptions::fields(ConfigFields& f) {
@@ -32,6 +36,20 @@ GnssFix GnssOptions::weighted(const GnssFix& fix) const {
     if (variance < floor_variance) variance = floor_variance;
   }
   return result;
+}
+
+bool GnssOptions::has_valid_sigma(const GnssFix& fix) const {
+  return is_valid_covariance(weighted(fix).position_covariance);
+}
+
+bool GnssOptions::allows(const GnssFix& fix) const {
+  return is_position(fix.antenna) && has_valid_sigma(fix) && fix.quality >= lowest_quality();
+}
+
+bool is_valid_covariance(const Eigen::Matrix3d& covariance) {
+  if (!covariance.allFinite() || covariance.diagonal().minCoeff() <= 0) return false;
+  const Eigen::LLT<Eigen::Matrix3d> llt(covariance);
+  return llt.info() == Eigen::Success;
 }
 
 }  // namespace foucault::diagnosis

@@ -21,6 +21,12 @@ class GnssOptions : public Configurable {
   FixQuality lowest_quality() const;  ///< of min_quality
   /// The fix with the sigmas of this section.
   GnssFix weighted(const GnssFix& fix) const;
+  /// Whether it has a covariance that is one, weighted.
+  bool has_valid_sigma(const GnssFix& fix) const;
+  /// Whether the fix may be used, whatever the state.
+  bool allows(const GnssFix& fix) const;
 };
+/// Finite and positive definite.
+bool is_valid_covariance(const Eigen::Matrix3d& covariance);
 
 }  // namespace foucault::diagnosis
