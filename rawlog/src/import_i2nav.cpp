@@ -5,6 +5,7 @@
 #include <deque>
 
 #include "foucault/core/error.h"
+#include "foucault/core/hole.h"
 #include "foucault/core/so3.h"
 #include "foucault/core/time.h"
 #include "import_run.h"
@@ -125,7 +126,7 @@ class ImuReader : public RecordReader {
       put(*last_, interval_ns);
     }
     // Samples are missing: what this one covers is one interval, the rest is a hole.
-    const bool hole = 2 * interval_ns > 3 * nominal_ns_;
+    const bool hole = is_hole(interval_ns, nominal_ns_);
     if (!hole) nominal_ns_ = interval_ns;
     put(sample, nominal_ns_);
     last_ = sample;
