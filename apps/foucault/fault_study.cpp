@@ -13,7 +13,7 @@
 #include "console.h"
 #include "foucault/core/error.h"
 #include "foucault/core/time.h"
-#include "foucault/diagnosis/log_check.h"
+#include "foucault/diagnosis/examination.h"
 #include "foucault/evaluation/reference_error.h"
 #include "foucault/evaluation/run_metrics.h"
 #include "foucault/rawlog/rawlog_source.h"
@@ -73,9 +73,9 @@ std::optional<std::string> process(const std::string& log, const std::string& me
   observer.place(source.mounting());
   const std::unique_ptr<Estimator> estimator =
       find_method(method).make(settings, source.mounting(), observer);
-  LogChecker checker(settings.imu.noise(), source.mounting());
+  diagnosis::Examination examination(settings.imu.noise(), source.mounting(), settings.gnss);
   while (const std::optional<Measurement> measurement = source.next()) {
-    checker.add(*measurement);
+    examination.add(*measurement);
     if (const auto* reference = std::get_if<ReferencePose>(&*measurement)) {
       observer.reference(*reference);
     }
@@ -84,7 +84,7 @@ std::optional<std::string> process(const std::string& log, const std::string& me
   estimator->finish();
   observer.judge();
   for (const Notice& notice : source.notices()) observer.notice(notice);
-  for (const Notice& notice : checker.warnings()) observer.notice(notice);
+  for (const Notice& notice : examination.warnings()) observer.notice(notice);
   return source.damage();
 }
 

@@ -8,7 +8,7 @@
 
 #include "foucault/core/error.h"
 #include "foucault/core/profile.h"
-#include "foucault/diagnosis/log_check.h"
+#include "foucault/diagnosis/examination.h"
 #include "foucault/rawlog/rawlog_source.h"
 #include "foucault/reports/run_report.h"
 #include "methods.h"
@@ -50,9 +50,9 @@ void read_batch(RawlogSource& source, std::vector<Measurement>& batch) {
   }
 }
 
-void check_batch(const std::vector<Measurement>& batch, LogChecker& checker) {
+void check_batch(const std::vector<Measurement>& batch, diagnosis::Examination& examination) {
   const StageTimer timer(Stage::statistics);
-  for (const Measurement& measurement : batch) checker.add(measurement);
+  for (const Measurement& measurement : batch) examination.add(measurement);
 }
 
 void process_batch(const std::vector<Measurement>& batch, Estimator& estimator, RunOutput& output) {
@@ -63,18 +63,18 @@ void process_batch(const std::vector<Measurement>& batch, Estimator& estimator, 
 }
 
 void process(const std::string& log, RawlogSource& source, Estimator& estimator, Stage per_sample,
-             RunOutput& output, LogChecker& checker, Console& console) {
+             RunOutput& output, diagnosis::Examination& examination, Console& console) {
   std::vector<Measurement> batch;
   batch.reserve(kBatch);
   for (read_batch(source, batch); !batch.empty(); read_batch(source, batch)) {
-    check_batch(batch, checker);
+    check_batch(batch, examination);
     const StageTimer timer(per_sample);
     naming(log, source, [&] { process_batch(batch, estimator, output); });
     console.progress("processing", source.progress());
   }
   naming(log, source, [&] { estimator.finish(); });
   for (const Notice& notice : source.notices()) output.notice(notice);
-  for (const Notice& notice : checker.warnings()) output.notice(notice);
+  for (const Notice& notice : examination.warnings()) output.notice(notice);
   if (source.damage()) output.damage(*source.damage());
 }
 
@@ -109,8 +109,8 @@ RunResult run_into(const RunJob& job, const std::filesystem::path& folder, Conso
   RunOutput output(folder, source.mounting(), settings.output, method.keep_references_s,
                    report ? &*report : nullptr, console);
   const std::unique_ptr<Estimator> estimator = method.make(settings, source.mounting(), output);
-  LogChecker checker(settings.imu.noise(), source.mounting());
-  process(job.log, source, *estimator, method.per_sample, output, checker, console);
+  diagnosis::Examination examination(settings.imu.noise(), source.mounting(), settings.gnss);
+  process(job.log, source, *estimator, method.per_sample, output, examination, console);
 
   RunResult result;
   result.method = job.method;

@@ -10,6 +10,7 @@ namespace {
 
 using Action = FixDecision::Action;
 
+/// Chosen: wrong ambiguities and reflections last for seconds; a true jump is believed after 31 s.
 constexpr double kOffsetStays = 30;  // [s]
 
 }  // namespace

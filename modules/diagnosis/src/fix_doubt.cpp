@@ -9,6 +9,9 @@
 namespace foucault::diagnosis {
 namespace {
 
+// Chosen: true jumps are to be believed after a minute or so (31 s are measured), fixes that come
+// once in half a minute are still a sequence, and a few lost samples (0.2 s, as where a run names a
+// hole) leave the velocity known to cm/s.
 constexpr double kLongestDoubt = 90;     // [s]
 constexpr double kNoMoreFixes = 30;      // [s]
 constexpr double kNoticeableHole = 0.2;  // [s], in the IMU

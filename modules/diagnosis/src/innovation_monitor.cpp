@@ -21,12 +21,14 @@ using state::NodeMatrix;
 using state::part;
 namespace block = state::block;
 
+// Chosen, on simulated ramps and jumps (a ramp to 20 m leaves 0.4 m): by fewer or sooner, noise
+// makes lines; over more a consumer IMU bends them.
 constexpr double kLookAfter = 5;       // [s]
 constexpr std::size_t kLookNeeds = 6;  // fixes
 constexpr double kWindow = 10;         // [s] that a look goes back
-/// For so long [s] the errors of a line stay the same, and do not average out.
-constexpr double kLineMemory = 10;
-constexpr double kGravity = 9.8;
+/// The window of a line: for so long [s] its errors stay the same, and do not average out.
+constexpr double kLineMemory = kWindow;
+constexpr double kGravity = 9.8;  // to two digits, by which a tilt is an acceleration
 
 /// What the state does not know of its acceleration: tilt and accelerometer bias [m/s^2].
 double acceleration_sigma(const state::Epoch& epoch) {
@@ -98,7 +100,7 @@ InnovationLine InnovationMonitor::fit() const {
 /// From nothing, up to where the gate took notice, or from the line before it; and the way of some
 /// fixes.
 bool InnovationMonitor::goes_on(const InnovationLine& line) const {
-  constexpr double kGateSigmas = 8;
+  constexpr double kGateSigmas = 8;  // 6 of the gate at 1e-7, and the noise of the line
   const double way = kMissesThatEndLine * seconds_between(recent_[0].t_ns, recent_[1].t_ns);
   const Vector3d most = kGateSigmas * std::sqrt(judge_.level()) * begin_.variance_n.cwiseSqrt() +
                         way * line.rate_n.cwiseAbs();
@@ -238,7 +240,7 @@ InnovationMonitor::Pass InnovationMonitor::drive_again(std::unique_ptr<Navigator
 /// to the double.
 NodeMatrix InnovationMonitor::looseness() const {
   constexpr double kSpeed = 3;      // [m/s]: an error of the velocity beyond is one of attitude
-  constexpr double kLargest = 0.5;  // [rad]
+  constexpr double kLargest = 0.5;  // [rad]; chosen: what is still about linear
   const InnovationLine line = line_ ? *line_ : recent_.size() > 2 ? fit() : InnovationLine{};
   const double rate = line.rate_n.norm();
   const double turn = std::min(kLargest, rate / std::max(kSpeed, begin_.state.velocity_n.norm()));
