@@ -17,13 +17,16 @@ namespace {
 
 constexpr double kForever = std::numeric_limits<double>::infinity();
 
-navigation::NavigationRunOptions run_options(const Settings& settings) {
+navigation::NavigationRunOptions run_options(const Settings& settings,
+                                             const state::Mounting& mounting) {
   navigation::NavigationRunOptions options;
   options.gnss = settings.gnss;
   options.gaps = settings.gaps;
   options.aids = settings.aids;
   options.node_interval_s = settings.fgo.node_interval_s;
   options.rate = settings.output.epoch_rate();
+  options.imu = settings.imu.noise();
+  options.mounting = mounting;
   return options;
 }
 
@@ -33,7 +36,7 @@ std::unique_ptr<state::Estimator> drive(std::unique_ptr<measurement::Navigator> 
   alignment::Aligner aligner(settings.alignment, settings.imu.noise(), mounting,
                              settings.calibrate.layout());
   return std::make_unique<navigation::NavigationRun>(std::move(navigator), std::move(aligner),
-                                                     run_options(settings), sink);
+                                                     run_options(settings, mounting), sink);
 }
 
 std::unique_ptr<measurement::Navigator> window(preintegration::PreintegrationModel model,
@@ -65,7 +68,7 @@ std::unique_ptr<state::Estimator> make_rts(const Settings& settings,
   return navigation::make_smoother(
       std::make_unique<ekf::RtsRecorder>(settings.imu.noise(), settings.calibrate.layout(),
                                          settings.ekf),
-      std::move(aligner), run_options(settings), sink);
+      std::move(aligner), run_options(settings, mounting), sink);
 }
 
 /// The forward run of a batch.
@@ -85,7 +88,7 @@ std::unique_ptr<state::Estimator> make_batch(const Settings& settings,
       std::make_unique<fgo::BatchRecorder>(first_estimate(settings), settings.fgo,
                                            settings.batch.preintegration_model(),
                                            settings.imu.noise(), settings.calibrate.layout()),
-      std::move(aligner), run_options(settings), sink);
+      std::move(aligner), run_options(settings, mounting), sink);
 }
 
 }  // namespace

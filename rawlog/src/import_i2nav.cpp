@@ -6,6 +6,7 @@
 
 #include "foucault/core/constants.h"
 #include "foucault/core/error.h"
+#include "foucault/core/hole.h"
 #include "foucault/core/so3.h"
 #include "foucault/core/time.h"
 #include "import_run.h"
@@ -124,7 +125,7 @@ class I2navImu : public RecordReader {
       put(*last_, interval_ns);
     }
     // Samples are missing: what this one covers is one interval, the rest is a hole.
-    const bool hole = 2 * interval_ns > 3 * nominal_ns_;
+    const bool hole = is_hole(interval_ns, nominal_ns_);
     if (!hole) nominal_ns_ = interval_ns;
     put(sample, nominal_ns_);
     last_ = sample;

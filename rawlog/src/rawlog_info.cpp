@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "foucault/core/hole.h"
 #include "foucault/imu/burst_stamps.h"
 #include "mrpt_convert.h"
 #include "rawlog_stream.h"
@@ -102,13 +103,12 @@ class StreamStatistics {
   }
 
   StreamInfo result() const {
-    constexpr double kGapIntervals = 1.5;
     StreamInfo info = info_;
     info.median_interval = bursts_ ? bursts_->interval_s : intervals_.median();
     info.burst_samples = bursts_ ? bursts_->samples : 0;
     const double usual = bursts_ ? bursts_->samples * bursts_->interval_s : info.median_interval;
-    info.gap_count = intervals_.longer_than(kGapIntervals * usual);
-    info.longest_gaps = longest_.in_time_order(kGapIntervals * usual);
+    info.gap_count = intervals_.longer_than(kHoleIntervals * usual);
+    info.longest_gaps = longest_.in_time_order(kHoleIntervals * usual);
     return info;
   }
 

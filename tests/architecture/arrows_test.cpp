@@ -36,7 +36,7 @@ const std::map<std::string, Names> kArrows = {
     {"rawlog", {"core", "geodesy", "state", "imu"}},
     {"plot", {"core"}},
     {"page", {"core", "plot"}},
-    {"content", {"core", "state", "plot", "page"}},
+    {"content", {"core", "geodesy", "state", "plot", "page"}},
 };
 
 bool is_source(const fs::path& path) {

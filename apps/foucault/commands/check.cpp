@@ -7,7 +7,7 @@
 #include "arguments.h"
 #include "command.h"
 #include "foucault/core/error.h"
-#include "foucault/diagnosis/log_check.h"
+#include "foucault/diagnosis/examination.h"
 #include "foucault/rawlog/rawlog_source.h"
 #include "settings.h"
 
@@ -35,13 +35,13 @@ void print(const std::vector<diagnosis::Finding>& findings) {
 
 void check(const std::string& log, const Settings& settings, Console& console) {
   rawlog::RawlogSource source(log, settings.imu.sample_kind(), settings.rawlog);
-  diagnosis::LogChecker checker(settings.imu.noise(), source.mounting());
+  diagnosis::Examination examination(settings.imu.noise(), source.mounting(), settings.gnss);
   while (const std::optional<Measurement> measurement = source.next()) {
-    checker.add(*measurement);
+    examination.add(*measurement);
     console.progress("checking", source.progress());
   }
   console.clear_progress();
-  const std::vector<diagnosis::Finding> findings = checker.findings();
+  const std::vector<diagnosis::Finding> findings = examination.findings();
   print(findings);
   for (const state::Notice& notice : source.notices()) {
     fmt::print("{:<8} {:<20} {}\n", "warning", "log", notice.text);

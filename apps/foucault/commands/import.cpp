@@ -8,6 +8,7 @@
 #include "arguments.h"
 #include "command.h"
 #include "foucault/core/error.h"
+#include "foucault/core/fix_quality.h"
 #include "foucault/core/time.h"
 #include "foucault/core/units.h"
 #include "foucault/rawlog/import_csv.h"
@@ -43,8 +44,7 @@ void report_summary(Console& console, const rawlog::ImportSummary& summary,
   if (summary.reference) report_stream(console, "reference", *summary.reference);
   std::string qualities;
   for (const auto& [quality, count] : summary.qualities) {
-    qualities +=
-        fmt::format("{}{} {}", qualities.empty() ? "" : ", ", count, quality_name(quality));
+    qualities += fmt::format("{}{} {}", qualities.empty() ? "" : ", ", count, name_of(quality));
   }
   console.say(
       fmt::format("{:<10} {}; {} with velocity", "fixes", qualities, summary.with_velocity));

@@ -4,7 +4,6 @@
 #include <optional>
 #include <variant>
 
-#include "foucault/diagnosis/log_check.h"
 #include "foucault/rawlog/rawlog_source.h"
 #include "jobs/simulation_job.h"
 #include "methods.h"
@@ -28,9 +27,7 @@ std::optional<std::string> process(const std::string& log, const std::string& me
   observer.place(source.mounting());
   const std::unique_ptr<state::Estimator> estimator =
       find_method(method).make(settings, source.mounting(), observer);
-  diagnosis::LogChecker checker(settings.imu.noise(), source.mounting());
   while (const std::optional<Measurement> measurement = source.next()) {
-    checker.add(*measurement);
     if (const auto* reference = std::get_if<ReferencePose>(&*measurement)) {
       observer.reference(*reference);
     }
@@ -39,7 +36,6 @@ std::optional<std::string> process(const std::string& log, const std::string& me
   estimator->finish();
   observer.judge();
   for (const state::Notice& notice : source.notices()) observer.notice(notice);
-  for (const state::Notice& notice : checker.warnings()) observer.notice(notice);
   return source.damage();
 }
 

@@ -9,7 +9,6 @@
 #include "foucault/content/run_report.h"
 #include "foucault/core/error.h"
 #include "foucault/core/profile.h"
-#include "foucault/diagnosis/log_check.h"
 #include "foucault/export/text_file.h"
 #include "foucault/rawlog/rawlog_source.h"
 #include "jobs/run_output.h"
@@ -51,11 +50,6 @@ void read_batch(rawlog::RawlogSource& source, std::vector<Measurement>& batch) {
   }
 }
 
-void check_batch(const std::vector<Measurement>& batch, diagnosis::LogChecker& checker) {
-  const StageTimer timer(Stage::statistics);
-  for (const Measurement& measurement : batch) checker.add(measurement);
-}
-
 void process_batch(const std::vector<Measurement>& batch, state::Estimator& estimator,
                    RunOutput& output) {
   for (const Measurement& measurement : batch) {
@@ -65,19 +59,16 @@ void process_batch(const std::vector<Measurement>& batch, state::Estimator& esti
 }
 
 void process(const std::string& log, rawlog::RawlogSource& source, state::Estimator& estimator,
-             Stage per_sample, RunOutput& output, diagnosis::LogChecker& checker,
-             Console& console) {
+             Stage per_sample, RunOutput& output, Console& console) {
   std::vector<Measurement> batch;
   batch.reserve(kBatch);
   for (read_batch(source, batch); !batch.empty(); read_batch(source, batch)) {
-    check_batch(batch, checker);
     const StageTimer timer(per_sample);
     naming(log, source, [&] { process_batch(batch, estimator, output); });
     console.progress("processing", source.progress());
   }
   naming(log, source, [&] { estimator.finish(); });
   for (const state::Notice& notice : source.notices()) output.notice(notice);
-  for (const state::Notice& notice : checker.warnings()) output.notice(notice);
   if (source.damage()) output.damage(*source.damage());
 }
 
@@ -113,8 +104,7 @@ RunResult run_into(const RunJob& job, const std::filesystem::path& folder, Conso
                    report ? &*report : nullptr, console);
   const std::unique_ptr<state::Estimator> estimator =
       method.make(settings, source.mounting(), output);
-  diagnosis::LogChecker checker(settings.imu.noise(), source.mounting());
-  process(job.log, source, *estimator, method.per_sample, output, checker, console);
+  process(job.log, source, *estimator, method.per_sample, output, console);
 
   RunResult result;
   result.method = job.method;

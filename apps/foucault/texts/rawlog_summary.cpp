@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "foucault/core/fix_quality.h"
 #include "foucault/core/so3.h"
 #include "foucault/core/time.h"
 #include "foucault/core/units.h"
@@ -92,7 +93,7 @@ std::string stream_text(const rawlog::StreamInfo& s) {
 std::string receiver_text(const rawlog::GnssInfo& r) {
   std::string text = fmt::format("  {:<14}", r.label);
   for (const auto& [quality, count] : r.qualities) {
-    text += fmt::format(" {} {},", count, quality_name(quality));
+    text += fmt::format(" {} {},", count, name_of(quality));
   }
   text +=
       fmt::format(" {} without position, {} with velocity\n", r.without_position, r.with_velocity);
@@ -142,7 +143,7 @@ Json geodetic_json(const Geodetic& p) {
 
 Json receiver_json(const rawlog::GnssInfo& r) {
   Json qualities = Json::object();
-  for (const auto& [quality, count] : r.qualities) qualities[quality_name(quality)] = count;
+  for (const auto& [quality, count] : r.qualities) qualities[std::string(name_of(quality))] = count;
   Json json = Object()
                   .with("label", r.label)
                   .with("qualities", qualities)
@@ -159,24 +160,6 @@ Json receiver_json(const rawlog::GnssInfo& r) {
 }
 
 }  // namespace
-
-std::string quality_name(FixQuality quality) {
-  switch (quality) {
-    case FixQuality::unknown:
-      return "unknown";
-    case FixQuality::single:
-      return "single";
-    case FixQuality::differential:
-      return "differential";
-    case FixQuality::ppp:
-      return "ppp";
-    case FixQuality::float_rtk:
-      return "float_rtk";
-    case FixQuality::fixed_rtk:
-      return "fixed_rtk";
-  }
-  return "unknown";
-}
 
 std::string rawlog_text(const rawlog::RawlogInfo& info) {
   std::string text = fmt::format("{}: {:.1f} MB{}, {} records{}\n", info.path,

@@ -10,7 +10,4 @@ namespace foucault::app {
 std::string rawlog_text(const rawlog::RawlogInfo& info);
 std::string rawlog_json(const rawlog::RawlogInfo& info);
 
-/// Name of a fix quality in outputs, e.g. "fixed_rtk".
-std::string quality_name(FixQuality quality);
-
 }  // namespace foucault::app

@@ -5,8 +5,10 @@
 #include <limits>
 #include <utility>
 
+#include "foucault/core/constants.h"
 #include "foucault/core/so3.h"
 #include "foucault/core/time.h"
+#include "foucault/geodesy/wgs84.h"
 #include "foucault/state/vehicle_attitude.h"
 
 namespace foucault::content {
@@ -16,16 +18,13 @@ using namespace plot;
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kDegrees = 180 / M_PI;
+constexpr double kDegrees = 1 / kDegree;
 constexpr double kDegreesPerHour = kDegrees * 3600;
 constexpr double kMilligal = 1e5;  // a m/s^2
 constexpr size_t kMostGaps = 64;
 constexpr size_t kMostNotices = 200;
 constexpr size_t kMostOutages = 1000;
 constexpr size_t kMostStretches = 1000;
-
-constexpr double kSemiMajorAxis = 6378137.0;       // WGS-84 [m]
-constexpr double kFlattening = 1 / 298.257223563;  // WGS-84
 
 Eigen::Vector3d sigma_of(const Eigen::Matrix3d& covariance) {
   return covariance.diagonal().cwiseMax(0).cwiseSqrt();
@@ -150,10 +149,8 @@ std::vector<Interval> StepWatch::longest_gaps() const { return gaps_; }
 
 Eigen::Vector3d StartPlane::north_east_up(const Geodetic& place) const {
   const double middle = (start_.latitude + place.latitude) / 2;
-  const double e2 = kFlattening * (2 - kFlattening);
-  const double w2 = 1 - e2 * std::sin(middle) * std::sin(middle);
-  const double meridian = kSemiMajorAxis * (1 - e2) / (w2 * std::sqrt(w2));
-  const double transverse = kSemiMajorAxis / std::sqrt(w2);
+  const double meridian = geodesy::wgs84::meridian_radius(middle);
+  const double transverse = geodesy::wgs84::transverse_radius(middle);
   return {(meridian + start_.height) * (place.latitude - start_.latitude),
           (transverse + start_.height) * std::cos(middle) *
               so3::wrap(place.longitude - start_.longitude),

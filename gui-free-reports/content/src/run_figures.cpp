@@ -8,6 +8,7 @@
 #include <string_view>
 #include <utility>
 
+#include "foucault/core/fix_quality.h"
 #include "foucault/plot/axis_scale.h"
 #include "foucault/plot/text.h"
 #include "map_unit.h"
@@ -177,31 +178,16 @@ std::vector<Figure> triad_figures(const RunData& data, const std::array<TriadFig
   return figures;
 }
 
-struct QualityLook {
-  const char* name;
-  Ink ink;
-};
-
 /// In the order of FixQuality.
-constexpr std::array<QualityLook, 6> kQualities{{{"unknown type", Ink::gray},
-                                                 {"single point", Ink::vermillion},
-                                                 {"differential", Ink::purple},
-                                                 {"PPP", Ink::blue},
-                                                 {"RTK float", Ink::orange},
-                                                 {"RTK fixed", Ink::green}}};
-
-}  // namespace
-
-std::string quality_name(FixQuality quality) {
-  return kQualities.at(static_cast<size_t>(quality)).name;
-}
-
-namespace {
+constexpr std::array<Ink, 6> kQualityInks{Ink::gray, Ink::vermillion, Ink::purple,
+                                          Ink::blue, Ink::orange,     Ink::green};
 
 /// Every fix type, in the order of its number.
 std::vector<Category> quality_categories() {
   std::vector<Category> categories;
-  for (const QualityLook& quality : kQualities) categories.push_back({quality.name, quality.ink});
+  for (size_t i = 0; i < kQualityInks.size(); ++i) {
+    categories.push_back({std::string(words_of(static_cast<FixQuality>(i))), kQualityInks[i]});
+  }
   return categories;
 }
 
@@ -457,7 +443,7 @@ Panel type_panel(const RunData& data) {
   }
   for (const auto& [quality, count] : data.qualities) {
     place[static_cast<int>(quality)] = static_cast<double>(panel.y.categories.size());
-    panel.y.categories.push_back(quality_name(quality));
+    panel.y.categories.push_back(std::string(words_of(quality)));
   }
   Series types = points("fix type", Ink::gray, 12, {}, {});
   Series rejected = points("rejected", Ink::black, 12, {}, {});

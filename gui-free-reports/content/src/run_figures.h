@@ -10,8 +10,6 @@
 /// The figures of a run; none where there are no data for it. `subtitle` names the run.
 namespace foucault::content {
 
-std::string quality_name(FixQuality quality);
-
 std::optional<plot::Figure> ground_track(const RunData& data, const std::string& subtitle);
 /// Position, velocity, attitude, and how sure the estimator is of them.
 std::vector<plot::Figure> solution_figures(const RunData& data, const std::string& subtitle);

@@ -5,6 +5,7 @@
 #include <ctime>
 
 #include "consistency_section.h"
+#include "foucault/core/fix_quality.h"
 #include "foucault/core/time.h"
 #include "foucault/plot/text.h"
 #include "run_data.h"
@@ -18,22 +19,12 @@ using namespace page;
 
 namespace {
 
-/// To the nearest second.
-std::string utc_text(int64_t t_ns) {
-  const int64_t rounded = (t_ns + kNanosecondsPerSecond / 2) / kNanosecondsPerSecond;
-  const std::time_t seconds = static_cast<std::time_t>(rounded);
-  std::tm utc{};
-  gmtime_r(&seconds, &utc);
-  return fmt::format("{:04}-{:02}-{:02} {:02}:{:02}:{:02} UTC", utc.tm_year + 1900, utc.tm_mon + 1,
-                     utc.tm_mday, utc.tm_hour, utc.tm_min, utc.tm_sec);
-}
-
 Table fix_table(const RunData& data) {
   Table table;
   table.title = "GNSS fixes";
   table.header = {"", "Count"};
   for (const auto& [quality, count] : data.qualities) {
-    table.rows.push_back({quality_name(quality), std::to_string(count)});
+    table.rows.push_back({std::string(words_of(quality)), std::to_string(count)});
   }
   for (const auto& [verdict, count] : data.verdicts) {
     table.rows.push_back({verdict_name(verdict), std::to_string(count)});

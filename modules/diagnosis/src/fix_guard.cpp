@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "foucault/core/median.h"
 #include "foucault/core/position.h"
 #include "foucault/core/time.h"
 #include "foucault/geodesy/local_frame.h"
@@ -15,12 +16,15 @@ namespace {
 
 /// Receivers give no position beyond 1000 knots, 515 m/s (export rules); twice that.
 constexpr double kFastest = 1000;  // [m/s]
-/// Nearer errors are for the judge of innovations, who knows the state.
-constexpr double kFarAway = 10000;    // [m]
+/// Chosen: nearer errors are for the judge of innovations, who knows the state.
+constexpr double kFarAway = 10000;  // [m]
+/// Chosen: receivers that report a wrong place do so for seconds, until they have a fix.
 constexpr double kLongestDoubt = 60;  // [s]
+/// Chosen, for tables at the rate of the IMU (50 Hz) and receivers with few digits: two of ten may
+/// be cut short by lost fixes. Of a receiver in motion no position comes twice.
 constexpr std::size_t kRuns = 10;
 constexpr int kEnoughRuns = 8;
-constexpr int kOften = 3;               // fixes of one position
+constexpr int kOften = 3;               // fixes of one position, at rest
 constexpr double kEarthRadius = 6.4e6;  // [m], smallest
 
 /// A lower bound of the way between two positions, good also across the Earth [m].
@@ -42,13 +46,7 @@ bool velocity_is_valid(const GnssFix& fix) {
          fix.velocity_covariance.diagonal().minCoeff() >= 0;
 }
 
-std::string when(int64_t t_ns) { return fmt::format("{:.3f} s", to_seconds(t_ns)); }
-
 }  // namespace
-
-void FixGuard::Tally::add(int64_t t_ns) {
-  if (count++ == 0) first_ns = t_ns;
-}
 
 FixGuard::Verdict FixGuard::look_at(const GnssFix& fix) {
   Verdict verdict;
@@ -105,8 +103,7 @@ bool HeldPositions::is_held() const {
     moving += run.moving && run.fixes > 1 ? 1 : 0;
     lengths.push_back(run.fixes);
   }
-  std::nth_element(lengths.begin(), lengths.begin() + kRuns / 2, lengths.end());
-  const int usual = lengths[kRuns / 2];
+  const int usual = median(lengths);
   const int equal = static_cast<int>(std::count(lengths.begin(), lengths.end(), usual));
   return moving >= kEnoughRuns || (usual >= kOften && equal >= kEnoughRuns);
 }
@@ -137,7 +134,7 @@ std::vector<std::string> FixGuard::summary() const {
   const auto add = [&](const Tally& tally, const char* what) {
     if (tally.count == 0) return;
     lines.push_back(
-        fmt::format("{} fixes {}, the first at {}", tally.count, what, when(tally.first_ns)));
+        fmt::format("{} fixes {}, the first at {}", tally.count, what, utc_text(tally.first_ns)));
   };
   add(no_position_,
       "are no positions (latitude and longitude zero, not finite, or out of range) and were left "

@@ -10,9 +10,9 @@
 namespace foucault::diagnosis {
 namespace {
 
-constexpr double kAcceleration = 8;  // [m/s^2]
-constexpr double kSigmas = 5;
-constexpr double kLongestWait = 3;  // [s]
+constexpr double kAcceleration = 8;  // [m/s^2], the grip of a road (0.8 g)
+constexpr double kSigmas = 5;        // three fixes' sigmas summed: one in two million at least
+constexpr double kLongestWait = 3;   // [s]; chosen: fixes at 1 Hz, of which one is missing
 
 /// Distance of a fix from the line through two others, which a vehicle can explain by its
 /// acceleration up to a part of it.

@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 
+#include "foucault/core/fix_quality.h"
 #include "foucault/core/position.h"
 
 namespace foucault::diagnosis {
@@ -19,12 +20,7 @@ void GnssOptions::fields(ConfigFields& f) {
 }
 
 FixQuality GnssOptions::lowest_quality() const {
-  if (min_quality == "single") return FixQuality::single;
-  if (min_quality == "differential") return FixQuality::differential;
-  if (min_quality == "ppp") return FixQuality::ppp;
-  if (min_quality == "float_rtk") return FixQuality::float_rtk;
-  if (min_quality == "fixed_rtk") return FixQuality::fixed_rtk;
-  return FixQuality::unknown;
+  return fix_quality(min_quality).value_or(FixQuality::unknown);
 }
 
 GnssFix GnssOptions::weighted(const GnssFix& fix) const {

@@ -2,77 +2,88 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
+#include <limits>
 
 #include "foucault/core/error.h"
 
 namespace foucault::diagnosis {
 namespace {
 
-constexpr double kForceMean = 10;  // [s]
-constexpr double kStandardGravity = 9.80665;
-constexpr int64_t kSamplesNeeded = 40;
-constexpr int64_t kSamplesBetweenLooks = 20;
+/// Clocks of one recording that are further apart have no more in common than the date.
+constexpr double kLongestOffset = 25;  // [s]
+constexpr double kStep = 0.25;         // [s]
+/// The mean of the specific force is looked at twice: when bumps have averaged out, and when it
+/// must be gravity, see force_facts.cpp.
+constexpr double kFirstForceLook = 10;   // [s]
+constexpr double kSecondForceLook = 60;  // [s]
+// Chosen: a look goes over all windows or offsets, and little is new to the next.
 constexpr int64_t kWindowsBetweenLooks = 10;
+constexpr int64_t kSamplesBetweenLooks = 20;
+/// Chosen: a whole turn in all, in twice the courses that a TurnMatch needs.
+constexpr int64_t kSamplesNeeded = 40;
 constexpr double kTurnNeeded = 6.3;  // [rad]
 
 }  // namespace
 
-std::optional<std::string> wrong_force(double mean) {
-  struct Unit {
-    const char* name;
-    double per_m_s2;
-  };
-  for (const Unit& unit : {Unit{"g", 1 / kStandardGravity}, Unit{"mg", 1000 / kStandardGravity},
-                           Unit{"cm/s^2", 100}}) {
-    if (std::abs(mean / (kStandardGravity * unit.per_m_s2) - 1) < 0.15) {
-      return fmt::format("specific force is in {}, not m/s^2", unit.name);
-    }
-  }
-  if (mean > kStandardGravity / 3 && mean < 3 * kStandardGravity) return std::nullopt;
-  return fmt::format(
-      "specific force is {:.3g} m/s^2 where gravity is 9.8 (wrong units, or gravity "
-      "taken out)",
-      mean);
+Plausibility::Plausibility()
+    : turn_matcher_(kLongestOffset, kStep),
+      next_force_look_s_(kFirstForceLook),
+      next_window_look_(kWindowsBetweenLooks),
+      next_turn_look_(kSamplesBetweenLooks) {}
+
+void Plausibility::watch(const ImuIncrement& increment) {
+  now_ns_ = increment.t_end_ns;
+  mean_force_.add(increment);
+  turn_matcher_.add(increment);
+  force_match_.add(increment);
 }
 
-void Plausibility::look_at_force(const ImuIncrement& increment) {
-  if (force_time_ > kForceMean) return;
-  force_sum_b_ += increment.dvel_b;
-  force_time_ += increment.dt();
-  if (force_time_ <= kForceMean) return;
-  if (const std::optional<std::string> wrong = wrong_force(force_sum_b_.norm() / force_time_)) {
-    throw DataError(fmt::format("{}; name the unit in the import", *wrong));
+void Plausibility::watch(const GnssFix& fix) {
+  turn_matcher_.add(fix);
+  force_match_.add(fix);
+}
+
+ForceFacts Plausibility::force() const {
+  ForceFacts facts = mean_force_.facts();
+  facts.factor = force_match_.factor();
+  return facts;
+}
+
+void Plausibility::throw_if_useless() {
+  look_at_force();
+  look_at_turns();
+}
+
+bool Plausibility::force_is_due() {
+  bool due = false;
+  if (mean_force_.seconds() > next_force_look_s_) {
+    const bool was_first = next_force_look_s_ < kSecondForceLook;
+    next_force_look_s_ = was_first ? kSecondForceLook : std::numeric_limits<double>::infinity();
+    due = true;
+  }
+  if (force_match_.windows() >= next_window_look_) {
+    next_window_look_ = force_match_.windows() + kWindowsBetweenLooks;
+    due = true;
+  }
+  return due;
+}
+
+void Plausibility::look_at_force() {
+  if (!force_is_due()) return;
+  if (const std::optional<WrongForce> wrong = wrong_force(force())) {
+    throw DataError(fmt::format("{}; {}", wrong->text, wrong->remedy));
   }
 }
 
-void Plausibility::look_at_force_factor() {
-  if (force_match_.windows() < windows_looked_at_ + kWindowsBetweenLooks) return;
-  windows_looked_at_ = force_match_.windows();
-  const std::optional<MeasuredFactor> factor = force_match_.factor();
-  if (!factor) return;
-  if (const std::optional<std::string> wrong = wrong_force_factor(*factor)) {
-    throw DataError(fmt::format("{}; correct unit or scale in the import", *wrong));
-  }
-}
-
-void Plausibility::look_at_turns(int64_t t_ns) {
-  if (matcher_.samples() < samples_looked_at_ + kSamplesBetweenLooks) return;
-  samples_looked_at_ = matcher_.samples();
-  const std::optional<TurnMatch> match = matcher_.best();
+void Plausibility::look_at_turns() {
+  if (turn_matcher_.samples() < next_turn_look_) return;
+  next_turn_look_ = turn_matcher_.samples() + kSamplesBetweenLooks;
+  const std::optional<TurnMatch> match = turn_matcher_.best();
   if (!match) return;
   const bool clocks_show = match->samples >= kSamplesNeeded && match->turned >= kTurnNeeded;
   const std::optional<std::string> wrong =
-      clocks_show ? gross_mismatch(*match, t_ns) : wrong_rates(*match);
+      clocks_show ? gross_mismatch(*match, now_ns_) : wrong_rates(*match);
   if (wrong) throw DataError(*wrong);
-}
-
-void Plausibility::add(const ImuIncrement& increment) {
-  look_at_force(increment);
-  matcher_.add(increment);
-  force_match_.add(increment);
-  look_at_force_factor();
-  look_at_turns(increment.t_end_ns);
 }
 
 }  // namespace foucault::diagnosis

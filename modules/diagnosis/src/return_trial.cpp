@@ -13,9 +13,10 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double kLogOutlier = -4.6;  ///< one fix in a hundred
-constexpr double kLogOffset = -4.6;   ///< one return in a hundred
-constexpr double kOffsetOdds = 100;   ///< of the posterior
+constexpr double kLogOutlier = -4.6;  ///< log of one fix in a hundred; chosen
+constexpr double kLogOffset = -4.6;   ///< log of one return in a hundred; chosen
+/// Of the posterior, by KITTI with the noise of another IMU: 23 true fixes had odds of 33.
+constexpr double kOffsetOdds = 100;
 constexpr double kCertainOdds = 1000;
 constexpr double kLongEnough = 5;        ///< [s], of fixes
 constexpr std::size_t kEnoughFixes = 5;  ///< two to tell velocity, the others for outliers

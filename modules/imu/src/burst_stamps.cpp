@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "foucault/core/hole.h"
 #include "foucault/core/median.h"
 #include "foucault/core/time.h"
 
@@ -20,7 +21,6 @@ constexpr std::size_t kFewest = 20;   // intervals
 constexpr int kFewestBursts = 5;
 constexpr std::size_t kAhead = 400;  // samples: six bursts of 64, as FIFOs give
 constexpr int kBetweenLooks = 20;    // samples
-constexpr double kMissing = 1.5;     // times the usual interval, as in Incrementer
 
 double mean_interval(const std::vector<int64_t>& stamps_ns) {
   double sum = 0;
@@ -117,7 +117,7 @@ void BurstStamps::spread(int64_t arrival_ns, std::size_t samples) {
   }
   const int64_t usual_ns = n * nanoseconds(pattern_->interval_s);
   const int64_t gap_ns = last_arrival_ns_ ? arrival_ns - *last_arrival_ns_ : usual_ns;
-  const bool missing = static_cast<double>(gap_ns) > kMissing * static_cast<double>(usual_ns);
+  const bool missing = is_hole(gap_ns, usual_ns);
   const int64_t over_ns = missing ? usual_ns : gap_ns;
   for (int64_t k = 1; k <= n; ++k) even_.push_back(arrival_ns - over_ns + over_ns * k / n);
 }

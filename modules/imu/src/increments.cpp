@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "foucault/core/error.h"
+#include "foucault/core/hole.h"
 #include "foucault/core/time.h"
 
 namespace foucault::imu {
@@ -48,7 +49,7 @@ std::optional<ImuIncrement> Incrementer::add(const ImuSample& sample) {
   learn_interval(interval_ns);
   if (!interval_known()) return std::nullopt;
 
-  const bool hole = interval_ns > nominal_ns_ + nominal_ns_ / 2;
+  const bool hole = is_hole(interval_ns, nominal_ns_);
   const bool trapezoid = kind_ == SampleKind::instantaneous && !hole;
   ImuIncrement increment;
   increment.t_begin_ns = hole ? sample.t_ns - nominal_ns_ : previous.t_ns;

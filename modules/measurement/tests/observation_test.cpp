@@ -4,7 +4,9 @@
 
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <functional>
+#include <iterator>
 #include <random>
 #include <string>
 #include <vector>
@@ -248,7 +250,9 @@ TEST(Observation, EveryObservationHasALine) {
   int headers = 0;
   for (const auto& entry : std::filesystem::directory_iterator(FOUCAULT_MEASUREMENT_HEADERS)) {
     const std::string name = entry.path().stem().string();
-    if (name == "observation") continue;
+    std::ifstream file(entry.path());
+    const std::string text{std::istreambuf_iterator<char>(file), {}};
+    if (text.find(": public Observation") == std::string::npos) continue;
     ++headers;
     const bool there = std::any_of(kKinds.begin(), kKinds.end(),
                                    [&](const Kind& kind) { return kind.name == name; });

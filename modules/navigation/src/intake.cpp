@@ -36,7 +36,7 @@ Admitted Intake::admit(const Measurement& measurement) {
 }
 
 Admitted Intake::admit_increment(const ImuIncrement& increment) {
-  const diagnosis::ImuGuard::Verdict verdict = imu_guard_.look_at(increment);
+  const diagnosis::ImuGuard::Verdict verdict = examination_.admit(increment);
   if (!verdict.increment) return {{}, {}, verdict.notice};
   ++increments_;
   usual_interval_.add(verdict.increment->dt());
@@ -44,7 +44,7 @@ Admitted Intake::admit_increment(const ImuIncrement& increment) {
   if (verdict.accel_repeats) {
     usable.extra_accel_noise_density = options_.gaps.accel_sigma_m_s2 * std::sqrt(kRepeatLasts);
   }
-  plausibility_.add(usable);
+  examination_.throw_if_useless();
   return {usable, {}, verdict.notice, verdict.accel_repeats};
 }
 
@@ -60,11 +60,9 @@ Admitted Intake::admit_fix(GnssFix fix) {
       return {{}, state::FixVerdict::out_of_order, {}};
     case FixClass::bad_position:
       return {{}, state::FixVerdict::bad_sigma, {}};
-    case FixClass::usable:
-      plausibility_.add(fix);
-      break;
     case FixClass::bad_sigma:
     case FixClass::low_quality:
+    case FixClass::usable:
       break;
   }
   return {fix, {}, {}};
@@ -72,17 +70,23 @@ Admitted Intake::admit_fix(GnssFix fix) {
 
 /// What is not to be used of a fix that is good otherwise is taken off it.
 Intake::FixClass Intake::classify(GnssFix& fix) {
-  const std::optional<int64_t> imu_ns = imu_guard_.last_end_ns();
-  if (imu_ns && std::abs(fix.t_ns - *imu_ns) > kElsewhenNs) return FixClass::elsewhen;
-  if (is_repeated(fix)) return FixClass::repeated;
+  if (is_elsewhen(fix) || is_repeated(fix)) {
+    examination_.count(fix);
+    return is_elsewhen(fix) ? FixClass::elsewhen : FixClass::repeated;
+  }
   last_fix_ = fix;
-  const diagnosis::FixGuard::Verdict verdict = fix_guard_.look_at(fix);
+  const diagnosis::FixGuard::Verdict verdict = examination_.admit(fix);
   if (verdict.held) return FixClass::held;
   if (!verdict.fix) return FixClass::bad_position;
   fix = *verdict.fix;
   if (!options_.gnss.has_valid_sigma(fix)) return FixClass::bad_sigma;
   if (fix.quality < options_.gnss.lowest_quality()) return FixClass::low_quality;
   return FixClass::usable;
+}
+
+bool Intake::is_elsewhen(const GnssFix& fix) const {
+  const std::optional<int64_t> imu_ns = examination_.imu_guard().last_end_ns();
+  return imu_ns && std::abs(fix.t_ns - *imu_ns) > kElsewhenNs;
 }
 
 bool Intake::is_repeated(const GnssFix& fix) const {
@@ -95,7 +99,7 @@ void Intake::count(FixClass fix_class, const GnssFix& fix) {
   Tally& tally = fixes_[fix_class];
   if (tally.count++ == 0) tally.first_ns = fix.t_ns;
   if (fix_class == FixClass::elsewhen && !first_elsewhen_s_) {
-    first_elsewhen_s_ = seconds_between(*imu_guard_.last_end_ns(), fix.t_ns);
+    first_elsewhen_s_ = seconds_between(*examination_.imu_guard().last_end_ns(), fix.t_ns);
   }
 }
 
@@ -105,8 +109,8 @@ int64_t Intake::count_of(FixClass fix_class) const {
 }
 
 std::vector<std::string> Intake::summary(int64_t late) const {
-  std::vector<std::string> lines = imu_guard_.summary();
-  for (const std::string& line : fix_guard_.summary()) lines.push_back(line);
+  std::vector<std::string> lines = examination_.imu_guard().summary();
+  for (const std::string& line : examination_.fix_guard().summary()) lines.push_back(line);
   if (const int64_t repeated = count_of(FixClass::repeated); repeated > 0) {
     lines.push_back(fmt::format("{} fixes repeat the one before them and were left out", repeated));
   }
@@ -122,9 +126,10 @@ std::vector<std::string> Intake::summary(int64_t late) const {
 }
 
 void Intake::throw_if_nothing_usable() const {
-  if (2 * imu_guard_.left_out() > imu_guard_.seen()) {
+  const diagnosis::ImuGuard& guard = examination_.imu_guard();
+  if (2 * guard.left_out() > guard.seen()) {
     std::string why;
-    for (const std::string& line : imu_guard_.summary()) why += (why.empty() ? "" : "; ") + line;
+    for (const std::string& line : guard.summary()) why += (why.empty() ? "" : "; ") + line;
     throw DataError(fmt::format("{}; sort the IMU data by time and remove what is damaged", why));
   }
   if (increments_ == 0) {

@@ -7,9 +7,7 @@
 #include <vector>
 
 #include "foucault/core/measurement.h"
-#include "foucault/diagnosis/fix_guard.h"
-#include "foucault/diagnosis/imu_guard.h"
-#include "foucault/diagnosis/plausibility.h"
+#include "foucault/diagnosis/examination.h"
 #include "foucault/navigation/run_options.h"
 #include "foucault/state/result.h"
 
@@ -30,16 +28,17 @@ struct UsualInterval {
   void add(double dt);
 };
 
-/// What every measurement passes before any state is concerned: it is looked at, counted, and left
-/// out if it cannot be one of this recording.
-/// - Increments by diagnosis::ImuGuard; those of a stuck accelerometer get more noise.
-/// - Fixes: repeated, held, no position, out of reach (diagnosis::FixGuard), or stamped more than
-///   an hour from the IMU. Fixes with a sigma that is none, or of low quality, pass: a run shows
-///   them and does not use them.
+/// What every measurement passes before any state is concerned: it is looked at
+/// (diagnosis::Examination), counted, and left out if it cannot be one of this recording.
+/// - Increments: those that ImuGuard leaves out; those of a stuck accelerometer get more noise.
+/// - Fixes: repeated, held, no position, out of reach (FixGuard), or stamped more than an hour from
+///   the IMU. Fixes with a sigma that is none, or of low quality, pass: a run shows them and does
+///   not use them.
 /// admit() throws DataError for what makes a recording useless, see diagnosis::Plausibility.
 class Intake {
  public:
-  explicit Intake(const NavigationRunOptions& options) : options_(options) {}
+  explicit Intake(const NavigationRunOptions& options)
+      : options_(options), examination_(options.imu, options.mounting, options.gnss) {}
 
   Admitted admit(const Measurement& measurement);
 
@@ -47,6 +46,8 @@ class Intake {
 
   /// What was left out, one line a kind. `late`: fixes that came after later ones.
   std::vector<std::string> summary(int64_t late) const;
+  /// What seems wrong with the recording.
+  std::vector<state::Notice> warnings() const { return examination_.warnings(); }
   /// Throws DataError if there was no IMU or no usable fix, or if more than half of the increments
   /// had to be left out: why, and what to do about it.
   void throw_if_nothing_usable() const;
@@ -64,13 +65,12 @@ class Intake {
   FixClass classify(GnssFix& fix);
   void count(FixClass fix_class, const GnssFix& fix);
   int64_t count_of(FixClass fix_class) const;
+  bool is_elsewhen(const GnssFix& fix) const;
   bool is_repeated(const GnssFix& fix) const;
   std::string unusable_fixes() const;
 
   NavigationRunOptions options_;
-  diagnosis::ImuGuard imu_guard_;
-  diagnosis::FixGuard fix_guard_;
-  diagnosis::Plausibility plausibility_;
+  diagnosis::Examination examination_;
   UsualInterval usual_interval_;
   std::map<FixClass, Tally> fixes_;
   int64_t increments_ = 0;

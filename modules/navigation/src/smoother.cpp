@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "foucault/core/error.h"
+#include "foucault/core/hermite.h"
 #include "foucault/core/profile.h"
 #include "foucault/core/time.h"
 #include "foucault/geodesy/place.h"
@@ -17,13 +18,6 @@ struct Overloaded : F... {
 };
 template <class... F>
 Overloaded(F...) -> Overloaded<F...>;
-
-/// Value at s in [0, 1] between (a, slope a) and (b, slope b), slopes by s.
-Eigen::Vector3d hermite(double s, const Eigen::Vector3d& a, const Eigen::Vector3d& slope_a,
-                        const Eigen::Vector3d& b, const Eigen::Vector3d& slope_b) {
-  const double r = 1 - s;
-  return r * r * ((1 + 2 * s) * a + s * slope_a) + s * s * ((1 + 2 * r) * b - r * slope_b);
-}
 
 /// The error of the forward run between nodes. It is the error in n that changes smoothly.
 state::NodeVector error_between(double s, double length, const measurement::SmoothedEpoch& begin,
@@ -46,8 +40,8 @@ void throw_if_unsound(const std::deque<measurement::SmoothedEpoch>& nodes) {
     const std::optional<std::string> part = unsound_part(node.epoch());
     if (!part) continue;
     throw DataError(fmt::format(
-        "the smoothed solution's {} is not finite at {:.3f} s; see how far a forward method comes",
-        *part, to_seconds(node.state.t_ns)));
+        "the smoothed solution's {} is not finite at {}; see how far a forward method comes", *part,
+        utc_text(node.state.t_ns)));
   }
 }
 

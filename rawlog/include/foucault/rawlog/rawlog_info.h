@@ -13,7 +13,7 @@
 
 namespace foucault::rawlog {
 
-/// A hole in a stream: more than 1.5 median intervals between neighbouring stamps.
+/// A hole in a stream, by the median interval; see core/hole.h.
 struct Gap {
   int64_t t_ns = 0;   ///< where it begins
   double length = 0;  ///< [s]

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "foucault/core/measurement.h"
+#include "foucault/diagnosis/tally.h"
 
 namespace foucault::diagnosis {
 
@@ -55,11 +56,6 @@ class FixGuard {
   std::vector<std::string> summary() const;
 
  private:
-  struct Tally {
-    int64_t count = 0;
-    int64_t first_ns = 0;
-    void add(int64_t t_ns);
-  };
   /// Fixes in a row that a vehicle reaches from one another.
   struct Place {
     GnssFix last;

@@ -4,7 +4,6 @@
 #include <Eigen/Geometry>
 #include <cstdint>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "foucault/core/measurement.h"
@@ -54,8 +53,5 @@ class ForceMatch {
   std::vector<double> ratios_;  ///< the last kMost
   std::size_t next_ = 0;
 };
-
-/// What is wrong with accelerometers of this factor; none if it may be one of a real IMU.
-std::optional<std::string> wrong_force_factor(const MeasuredFactor& factor);
 
 }  // namespace foucault::diagnosis

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "foucault/core/measurement.h"
+#include "foucault/diagnosis/tally.h"
 
 namespace foucault::diagnosis {
 
@@ -43,11 +44,6 @@ class ImuGuard {
   std::optional<int64_t> last_end_ns() const { return last_end_ns_; }
 
  private:
-  struct Tally {
-    int64_t count = 0;
-    int64_t first_ns = 0;
-    void add(int64_t t_ns);
-  };
   /// One axis of one sensor.
   struct Axis {
     double value = 0;

@@ -1,43 +1,49 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
-#include <string>
 
-#include "foucault/diagnosis/force_match.h"
 #include "foucault/core/measurement.h"
+#include "foucault/diagnosis/force_facts.h"
+#include "foucault/diagnosis/force_match.h"
 #include "foucault/diagnosis/turn_match.h"
 
 namespace foucault::diagnosis {
-
-/// What is wrong with a specific force whose mean has this length [m/s^2]; none if it may be
-/// gravity, as the mean of any vehicle's is.
-std::optional<std::string> wrong_force(double mean);
 
 /// Looks for what makes a recording useless whatever the method: specific force or angular rates
 /// in other units or of a wrong scale, turned axes, clocks that are seconds apart.
 class Plausibility {
  public:
-  /// Throw DataError that names it and the remedy, as soon as it is certain.
-  void add(const ImuIncrement& increment);
-  void add(const GnssFix& fix) {
-    matcher_.add(fix);
-    force_match_.add(fix);
+  Plausibility();
+
+  /// What was admitted, and of fixes what may be used.
+  void watch(const ImuIncrement& increment);
+  void watch(const GnssFix& fix);
+
+  /// After an increment: throws DataError that names it and the remedy, as soon as it is certain.
+  void throw_if_useless();
+
+  void add(const ImuIncrement& increment) {
+    watch(increment);
+    throw_if_useless();
   }
+  void add(const GnssFix& fix) { watch(fix); }
+
+  ForceFacts force() const;
+  std::optional<TurnMatch> turns() const { return turn_matcher_.best(); }
 
  private:
-  void look_at_force(const ImuIncrement& increment);
-  void look_at_force_factor();
-  void look_at_turns(int64_t t_ns);
+  bool force_is_due();
+  void look_at_force();
+  void look_at_turns();
 
-  static constexpr double kLongestOffset = 25;  // [s]
-  static constexpr double kStep = 0.25;         // [s]
-
-  Eigen::Vector3d force_sum_b_ = Eigen::Vector3d::Zero();
-  double force_time_ = 0;
+  int64_t now_ns_ = 0;
+  MeanForce mean_force_;
   ForceMatch force_match_;
-  int64_t windows_looked_at_ = 0;
-  TurnMatcher matcher_{kLongestOffset, kStep};
-  int64_t samples_looked_at_ = 0;
+  TurnMatcher turn_matcher_;
+  double next_force_look_s_;
+  int64_t next_window_look_;
+  int64_t next_turn_look_;
 };
 
 }  // namespace foucault::diagnosis

@@ -47,6 +47,7 @@ class FaultObserver : public state::Sink {
   void epoch(const state::Epoch& epoch) override;
   void fix(const state::FixResult& fix) override { metrics_->fix(fix); }
   void notice(const state::Notice& notice) override;
+  bool wants_warnings() const override { return true; }
   /// At the end; what condemns the run is said like a notice.
   void judge();
 

@@ -1,8 +1,10 @@
 #pragma once
 
 #include "foucault/diagnosis/gnss_options.h"
+#include "foucault/imu/imu_noise.h"
 #include "foucault/measurement/aid_options.h"
 #include "foucault/navigation/gap_options.h"
+#include "foucault/state/interfaces.h"
 
 namespace foucault::navigation {
 
@@ -14,6 +16,8 @@ struct NavigationRunOptions {
   measurement::AidOptions aids;
   double node_interval_s = 1;  ///< longest time between nodes, see Navigator::hold()
   EpochRate rate = EpochRate::epochs;
+  imu::ImuNoise imu;  ///< as configured; for what is said of the recording, as is the mounting
+  state::Mounting mounting;
 };
 
 }  // namespace foucault::navigation

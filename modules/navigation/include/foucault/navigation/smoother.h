@@ -46,6 +46,7 @@ class Smoother : public state::Estimator {
     }
     void notice(const state::Notice& notice) override;
     bool wants_predictions() const override { return sink_.wants_predictions(); }
+    bool wants_warnings() const override { return sink_.wants_warnings(); }
     /// Those of the forward run; they do not wait.
     void prediction(const state::PredictionResult& result) override { sink_.prediction(result); }
     /// Smooths, once the forward run is over.

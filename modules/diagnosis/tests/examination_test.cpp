@@ -1,14 +1,13 @@
-#include "foucault/diagnosis/log_check.h"
+#include "foucault/diagnosis/examination.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "foucault/core/constants.h"
 #include "foucault/core/error.h"
 #include "foucault/core/time.h"
-#include "foucault/diagnosis/plausibility.h"
-#include "foucault/diagnosis/turn_match.h"
 #include "foucault/simulation/faults.h"
 #include "foucault/simulation/simulated_source.h"
 
@@ -30,9 +29,9 @@ LogFacts facts_of(const simulation::ScenarioOptions& scenario,
   simulation::FaultySource source(
       std::make_unique<simulation::SimulatedSource>(scenario, imu::imu_preset("ADIS16465")), faults,
       1);
-  LogChecker checker(imu::imu_preset("ADIS16465"), source.mounting());
-  while (const std::optional<Measurement> m = source.next()) checker.add(*m);
-  return checker.facts();
+  Examination examination(imu::imu_preset("ADIS16465"), source.mounting());
+  while (const std::optional<Measurement> m = source.next()) examination.add(*m);
+  return examination.facts();
 }
 
 std::vector<Finding> findings_of(const simulation::ScenarioOptions& scenario,
@@ -48,7 +47,7 @@ Finding finding(const std::vector<Finding>& findings, const std::string& subject
   return {};
 }
 
-TEST(LogCheck, HasNothingToSayAboutACleanRecording) {
+TEST(Examination, HasNothingToSayAboutACleanRecording) {
   for (const Finding& f : findings_of(city(), {})) {
     EXPECT_EQ(f.severity, Severity::ok) << f.subject << ": " << f.text;
   }
@@ -67,7 +66,7 @@ TEST_P(TimeOffset, IsFound) {
   EXPECT_NEAR(facts.turns->slope, 1, 0.05);
 }
 
-TEST(LogCheck, NamesClocksUnitsAndAxes) {
+TEST(Examination, NamesClocksUnitsAndAxes) {
   const auto severity_of = [](simulation::FaultKind kind, double size, const std::string& subject) {
     const Finding f = finding(findings_of(city(), {{kind, 0, 1e9, size}}), subject);
     EXPECT_NE(f.remedy, "") << subject;
@@ -109,27 +108,15 @@ class WithBadFixes : public state::Source {
   int fixes_ = 0;
 };
 
-TEST(LogCheck, FixesThatAreNoPositionsBlindNothingAndAreNamed) {
+TEST(Examination, FixesThatAreNoPositionsBlindNothingAndAreNamed) {
   WithBadFixes source(std::make_unique<simulation::FaultySource>(
       std::make_unique<simulation::SimulatedSource>(city(), imu::imu_preset("ADIS16465")),
       std::vector<simulation::Fault>{{simulation::FaultKind::imu_stamps_offset, 0, 1e9, 18}}, 1));
-  LogChecker checker(imu::imu_preset("ADIS16465"), source.mounting());
-  while (const std::optional<Measurement> m = source.next()) checker.add(*m);
-  EXPECT_EQ(finding(checker.findings(), "time offset").severity, Severity::error);
-  EXPECT_EQ(finding(checker.findings(), "GNSS fixes").severity, Severity::warning);
-  EXPECT_THAT(finding(checker.findings(), "GNSS fixes").text, HasSubstr("4 fixes are no pos"));
-}
-
-TEST(TurnMatch, AFixThatIsNoPositionDoesNotBlindIt) {
-  WithBadFixes source(
-      std::make_unique<simulation::SimulatedSource>(city(), imu::imu_preset("ADIS16465")));
-  TurnMatcher matcher(1, 0.02);
-  while (const std::optional<Measurement> m = source.next()) {
-    if (const auto* fix = std::get_if<GnssFix>(&*m)) matcher.add(*fix);
-    if (const auto* increment = std::get_if<ImuIncrement>(&*m)) matcher.add(*increment);
-  }
-  ASSERT_TRUE(matcher.best().has_value());
-  EXPECT_NEAR(matcher.best()->slope, 1, 0.05);
+  Examination examination(imu::imu_preset("ADIS16465"), source.mounting());
+  while (const std::optional<Measurement> m = source.next()) examination.add(*m);
+  EXPECT_EQ(finding(examination.findings(), "time offset").severity, Severity::error);
+  EXPECT_EQ(finding(examination.findings(), "GNSS fixes").severity, Severity::warning);
+  EXPECT_THAT(finding(examination.findings(), "GNSS fixes").text, HasSubstr("4 fixes are no pos"));
 }
 
 /// Sensors that measure a multiple of what they should.
@@ -153,12 +140,12 @@ class Scaled : public state::Source {
 };
 
 std::vector<Finding> findings_of(state::Source& source) {
-  LogChecker checker(imu::imu_preset("ADIS16465"), source.mounting());
-  while (const std::optional<Measurement> m = source.next()) checker.add(*m);
-  return checker.findings();
+  Examination examination(imu::imu_preset("ADIS16465"), source.mounting());
+  while (const std::optional<Measurement> m = source.next()) examination.add(*m);
+  return examination.findings();
 }
 
-TEST(LogCheck, FactorsThatNoSensorHasAreErrors) {
+TEST(Examination, FactorsThatNoSensorHasAreErrors) {
   for (const double factor : {0.5, 0.7, 1.4, 2.0}) {
     Scaled accel(1, factor), gyro(factor, 1);
     const Finding force = finding(findings_of(accel), "specific force");
@@ -170,27 +157,7 @@ TEST(LogCheck, FactorsThatNoSensorHasAreErrors) {
   }
 }
 
-/// A run says the same, as soon as it is certain.
-TEST(Plausibility, EndsARunWhoseSensorsHaveSuchFactors) {
-  const auto error_of = [](state::Source& source) -> std::string {
-    Plausibility plausibility;
-    try {
-      while (const std::optional<Measurement> m = source.next()) {
-        if (const auto* fix = std::get_if<GnssFix>(&*m)) plausibility.add(*fix);
-        if (const auto* increment = std::get_if<ImuIncrement>(&*m)) plausibility.add(*increment);
-      }
-    } catch (const DataError& error) {
-      return error.what();
-    }
-    return "";
-  };
-  Scaled accel(1, 0.5), gyro(0.5, 1), good(0.93, 1.07);
-  EXPECT_THAT(error_of(accel), HasSubstr("specific force is 0.5"));
-  EXPECT_THAT(error_of(gyro), HasSubstr("the gyroscopes turn 0.5"));
-  EXPECT_EQ(error_of(good), "");
-}
-
-TEST(LogCheck, FactorsThatSensorsHaveAreNot) {
+TEST(Examination, FactorsThatSensorsHaveAreNot) {
   for (const double factor : {0.93, 1.07}) {
     Scaled source(factor, factor);
     for (const Finding& f : findings_of(source)) {
@@ -199,17 +166,17 @@ TEST(LogCheck, FactorsThatSensorsHaveAreNot) {
   }
 }
 
-TEST(LogCheck, ForwardThatIsBackward) {
+TEST(Examination, ForwardThatIsBackward) {
   simulation::ScenarioOptions scenario = city();
   simulation::SimulatedSource source(scenario, imu::imu_preset("ADIS16465"));
   const state::Mounting turned{
-      Eigen::Quaterniond(Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitZ()))};
-  LogChecker checker(imu::imu_preset("ADIS16465"), turned);
-  while (const std::optional<Measurement> m = source.next()) checker.add(*m);
-  EXPECT_EQ(finding(checker.findings(), "axes").severity, Severity::error);
+      Eigen::Quaterniond(Eigen::AngleAxisd(kPi, Eigen::Vector3d::UnitZ()))};
+  Examination examination(imu::imu_preset("ADIS16465"), turned);
+  while (const std::optional<Measurement> m = source.next()) examination.add(*m);
+  EXPECT_EQ(finding(examination.findings(), "axes").severity, Severity::error);
 }
 
-TEST(LogCheck, NoiseAgainstTheConfiguration) {
+TEST(Examination, NoiseAgainstTheConfiguration) {
   const LogFacts facts = facts_of(city(), {});
   const imu::ImuNoise noise = imu::imu_preset("ADIS16465");
   ASSERT_GT(facts.rest.seconds, 30);
@@ -221,7 +188,7 @@ TEST(LogCheck, NoiseAgainstTheConfiguration) {
   EXPECT_EQ(finding(judge(facts, better), "gyroscope noise").severity, Severity::warning);
 }
 
-TEST(LogCheck, HolesAndLeverArm) {
+TEST(Examination, HolesAndLeverArm) {
   simulation::ScenarioOptions scenario = city();
   scenario.lever_arm_m.setZero();
   const std::vector<Finding> findings =
@@ -231,16 +198,63 @@ TEST(LogCheck, HolesAndLeverArm) {
   EXPECT_EQ(finding(findings, "lever arm").severity, Severity::warning);
 }
 
-/// Where every offset fits as well as any other there is nothing to complain about.
-TEST(TurnMatch, ACircleTellsNoOffset) {
-  TurnMatch match;
-  match.offset_s = 7;
-  match.correlation = 0.99;
-  match.slope = 1;
-  match.residual_share = 0.9;
-  EXPECT_FALSE(gross_mismatch(match, 0).has_value());
-  match.residual_share = 0.01;
-  EXPECT_TRUE(gross_mismatch(match, 0).has_value());
+/// What is not used of a recording does not tell anything about the rest of it.
+TEST(Examination, AdmitsWhatMayBeUsed) {
+  Examination examination(imu::imu_preset("ADIS16465"), state::Mounting());
+  ImuIncrement increment;
+  increment.t_end_ns = 10'000'000;
+  increment.dvel_b = {0, 0, -0.098};
+  EXPECT_TRUE(examination.admit(increment).increment);
+  EXPECT_FALSE(examination.admit(increment).increment);  // comes twice
+  GnssFix fix;
+  EXPECT_FALSE(examination.admit(fix).fix);  // latitude and longitude are zero
+  fix.antenna.latitude = 0.5;
+  EXPECT_TRUE(examination.admit(fix).fix);  // to be shown, with a bad sigma
+  examination.count(fix);
+  const LogFacts facts = examination.facts();
+  EXPECT_EQ(facts.imu.count, 1);
+  EXPECT_EQ(facts.gnss.count, 3);
+  EXPECT_EQ(facts.sigmas.bad, 1);
+  EXPECT_EQ(examination.imu_guard().left_out(), 1);
+  EXPECT_EQ(examination.fix_guard().summary().size(), 1u);
+}
+
+TEST(Examination, FixesThatOptionsExcludeTellNothingOfTurns) {
+  GnssOptions options;
+  options.min_quality = "fixed_rtk";
+  simulation::SimulatedSource source(city(), imu::imu_preset("ADIS16465"));
+  Examination examination(imu::imu_preset("ADIS16465"), source.mounting(), options);
+  while (std::optional<Measurement> m = source.next()) {
+    if (auto* fix = std::get_if<GnssFix>(&*m)) fix->quality = FixQuality::single;
+    examination.add(*m);
+  }
+  EXPECT_FALSE(examination.facts().turns);
+  EXPECT_GT(examination.facts().sigmas.smallest_m, 0);
+}
+
+TEST(Examination, EndsARunThatIsUseless) {
+  Scaled source(1, 0.1);
+  Examination examination(imu::imu_preset("ADIS16465"), source.mounting());
+  const auto run = [&] {
+    while (const std::optional<Measurement> m = source.next()) {
+      examination.add(*m);
+      examination.throw_if_useless();
+    }
+  };
+  EXPECT_THROW(run(), DataError);
+}
+
+/// What a run says at its end; of samples and fixes that were left out it has spoken itself.
+TEST(Examination, WarnsOfAllThatIsNotWell) {
+  WithBadFixes source(std::make_unique<simulation::FaultySource>(
+      std::make_unique<simulation::SimulatedSource>(city(), imu::imu_preset("ADIS16465")),
+      std::vector<simulation::Fault>{{simulation::FaultKind::imu_gap, 200, 5}}, 1));
+  Examination examination(imu::imu_preset("ADIS16465"), source.mounting());
+  while (const std::optional<Measurement> m = source.next()) examination.add(*m);
+  const std::vector<state::Notice> warnings = examination.warnings();
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_THAT(warnings[0].text, HasSubstr("1 holes, the longest 5"));
+  EXPECT_EQ(warnings[0].t_ns, examination.facts().imu.first_ns);
 }
 
 }  // namespace

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "foucault/diagnosis/force_facts.h"
+#include "foucault/diagnosis/rest_facts.h"
+#include "foucault/diagnosis/sigma_facts.h"
+#include "foucault/diagnosis/stream_facts.h"
+#include "foucault/diagnosis/turn_match.h"
+
+namespace foucault::diagnosis {
+
+/// What a recording shows without any state. Collected by Examination, judged by judge().
+struct LogFacts {
+  StreamFacts imu, gnss;
+  std::vector<std::string> bad_samples;  ///< of the IMU, a line a kind: how many, the first
+  std::vector<std::string> bad_fixes;    ///< the same of GNSS
+  double overlap_s = 0;
+  SigmaFacts sigmas;
+  std::optional<double> lever_arm_m;  ///< of the first fix
+  ForceFacts force;                   ///< its mean forward, right, down
+  RestFacts rest;
+  std::optional<TurnMatch> turns;
+  /// Correlation of the change of speed with the specific force forward and to the right.
+  std::optional<Eigen::Vector2d> acceleration_match;
+};
+
+}  // namespace foucault::diagnosis

@@ -1,0 +1,97 @@
+#include "foucault/diagnosis/examination.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "foucault/core/time.h"
+
+namespace foucault::diagnosis {
+namespace {
+
+constexpr double kNear = 1.0;       // [s]
+constexpr double kFineStep = 0.02;  // [s]
+/// An offset beyond kNear is believed if courses agree with it clearly better.
+constexpr double kClearlyBetter = 0.02;  // correlation
+
+}  // namespace
+
+Examination::Examination(const imu::ImuNoise& configured, const state::Mounting& mounting,
+                         const GnssOptions& gnss)
+    : configured_(configured),
+      q_v_b_(mounting.q_v_b.normalized()),
+      options_(gnss),
+      acceleration_(q_v_b_),
+      near_(kNear, kFineStep) {}
+
+ImuGuard::Verdict Examination::admit(const ImuIncrement& increment) {
+  const std::optional<int64_t> before_ns = imu_guard_.last_end_ns();
+  const ImuGuard::Verdict verdict = imu_guard_.look_at(increment);
+  if (imu_guard_.last_end_ns() != before_ns) imu_.add(increment.t_end_ns);
+  if (!verdict.increment) return verdict;
+  rest_.add(*verdict.increment);
+  acceleration_.add(*verdict.increment);
+  plausibility_.watch(*verdict.increment);
+  near_.add(*verdict.increment);
+  return verdict;
+}
+
+FixGuard::Verdict Examination::admit(const GnssFix& given) {
+  count(given);
+  const FixGuard::Verdict verdict = fix_guard_.look_at(given);
+  if (!verdict.fix) return verdict;
+  const GnssFix& fix = *verdict.fix;
+  if (!lever_arm_) lever_arm_ = fix.p_b_a.norm();
+  sigmas_.add(fix.position_covariance);
+  if (!options_.allows(fix)) return verdict;
+  rest_.add(fix);
+  acceleration_.add(fix);
+  plausibility_.watch(fix);
+  near_.add(fix);
+  return verdict;
+}
+
+void Examination::add(const Measurement& measurement) {
+  if (const auto* increment = std::get_if<ImuIncrement>(&measurement)) admit(*increment);
+  if (const auto* fix = std::get_if<GnssFix>(&measurement)) admit(*fix);
+}
+
+LogFacts Examination::facts() const {
+  LogFacts facts;
+  facts.imu = imu_.facts();
+  facts.gnss = gnss_.facts();
+  facts.bad_samples = imu_guard_.summary();
+  facts.bad_fixes = fix_guard_.summary();
+  facts.overlap_s = seconds_between(std::max(facts.imu.first_ns, facts.gnss.first_ns),
+                                    std::min(facts.imu.last_ns, facts.gnss.last_ns));
+  facts.sigmas = sigmas_;
+  facts.lever_arm_m = lever_arm_;
+  facts.force = plausibility_.force();
+  facts.force.mean = q_v_b_ * facts.force.mean;
+  facts.rest = rest_.facts();
+  facts.turns = turns();
+  facts.acceleration_match = acceleration_.correlation();
+  return facts;
+}
+
+std::optional<TurnMatch> Examination::turns() const {
+  const std::optional<TurnMatch> near = near_.best(), far = plausibility_.turns();
+  if (!near || !far) return near ? near : far;
+  const bool is_far = std::abs(far->correlation) > std::abs(near->correlation) + kClearlyBetter;
+  return is_far ? far : near;
+}
+
+std::vector<state::Notice> Examination::warnings() const {
+  const LogFacts all = facts();
+  std::vector<state::Notice> warnings;
+  for (const Finding& finding : judge(all, configured_)) {
+    if (finding.severity == Severity::ok) continue;
+    if (finding.subject == kSamplesSubject || finding.subject == kFixesSubject) continue;
+    warnings.push_back({all.imu.first_ns, state::NoticeKind::skipped,
+                        fmt::format("{}: {} ({})", finding.subject, finding.text, finding.remedy)});
+  }
+  return warnings;
+}
+
+}  // namespace foucault::diagnosis

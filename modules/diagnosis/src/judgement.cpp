@@ -1,0 +1,236 @@
+#include "foucault/diagnosis/judgement.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "foucault/core/constants.h"
+#include "foucault/core/time.h"
+#include "foucault/core/time_mismatch.h"
+
+namespace foucault::diagnosis {
+namespace {
+
+/// Collects findings.
+class Judgement {
+ public:
+  void ok(const std::string& subject, const std::string& text) {
+    findings.push_back({Severity::ok, subject, text, ""});
+  }
+  void warn(const std::string& subject, const std::string& text, const std::string& remedy) {
+    findings.push_back({Severity::warning, subject, text, remedy});
+  }
+  void error(const std::string& subject, const std::string& text, const std::string& remedy) {
+    findings.push_back({Severity::error, subject, text, remedy});
+  }
+  std::vector<Finding> findings;
+};
+
+double length(const StreamFacts& stream) {
+  return seconds_between(stream.first_ns, stream.last_ns);
+}
+
+void judge_stream(const StreamFacts& stream, const std::string& name, double longest_harmless,
+                  Judgement& out) {
+  if (stream.count == 0) {
+    return out.error(name, "no data", "import a recording that has them");
+  }
+  const std::string text = fmt::format(
+      "{} in {:.1f} s, one every {:.4g} s, {} holes, the longest {:.3g} s", stream.count,
+      length(stream), stream.interval_s, stream.holes, stream.longest_hole_s);
+  if (stream.longest_hole_s > longest_harmless) {
+    out.warn(name, text, "look for lost data; results are worse after holes");
+  } else if (stream.interval_s > longest_harmless) {
+    out.warn(name, text, "record more often; results are worse between stamps so far apart");
+  } else {
+    out.ok(name, text);
+  }
+}
+
+void judge_samples(const LogFacts& facts, Judgement& out) {
+  for (const std::string& line : facts.bad_fixes) {
+    out.warn(kFixesSubject, line,
+             "`foucault run` does without; find out why the receiver writes them");
+  }
+  for (const std::string& line : facts.bad_samples) {
+    out.warn(kSamplesSubject, line, "`foucault run` bridges what is missing; find out why it is");
+  }
+}
+
+void judge_overlap(const LogFacts& facts, Judgement& out) {
+  if (facts.imu.count == 0 || facts.gnss.count == 0) return;
+  const double later = seconds_between(facts.imu.first_ns, facts.gnss.first_ns);
+  if (facts.overlap_s <= 0) {
+    return out.error("overlap", "IMU and GNSS have no time in common",
+                     "GNSS begins " + describe_mismatch(later));
+  }
+  const std::string text = fmt::format("{:.1f} s in common", facts.overlap_s);
+  if (facts.overlap_s < 0.5 * std::min(length(facts.imu), length(facts.gnss))) {
+    return out.warn("overlap", text, "GNSS begins " + describe_mismatch(later));
+  }
+  out.ok("overlap", text);
+}
+
+void judge_sigmas(const LogFacts& facts, Judgement& out) {
+  if (facts.sigmas.bad > 0) {
+    out.warn("sigmas",
+             fmt::format("{} of {} fixes have a sigma that is zero, negative or not finite",
+                         facts.sigmas.bad, facts.gnss.count),
+             "give sigmas in the import, or gnss.sigma_floor_m");
+  }
+  if (facts.sigmas.bad == facts.gnss.count) return;
+  const std::string range =
+      fmt::format("horizontal {:.3g} to {:.3g} m", facts.sigmas.smallest_m, facts.sigmas.largest_m);
+  if (facts.sigmas.smallest_m < 0.001 || facts.sigmas.largest_m > 1000) {
+    return out.warn("sigmas", range + ", which no receiver has",
+                    "correct their unit in the import");
+  }
+  if (facts.rest.fix_pairs >= 20 && facts.rest.fix_scatter > 3) {
+    return out.warn("sigmas",
+                    fmt::format("{}; at rest fixes scatter {:.1f} times as much", range,
+                                facts.rest.fix_scatter),
+                    fmt::format("gnss.sigma_scale={:.0f}", std::ceil(facts.rest.fix_scatter)));
+  }
+  out.ok("sigmas", range);
+}
+
+void judge_lever_arm(const LogFacts& facts, Judgement& out) {
+  if (!facts.lever_arm_m) return;
+  const std::string text = fmt::format("{:.3f} m", *facts.lever_arm_m);
+  if (*facts.lever_arm_m == 0) {
+    out.warn("lever arm", "zero", "give it in the import, unless the antenna is on the IMU");
+  } else if (*facts.lever_arm_m > 10) {
+    out.warn("lever arm", text, "is it in metres, and from the IMU to the antenna?");
+  } else {
+    out.ok("lever arm", text);
+  }
+}
+
+void judge_density(const std::string& name, const std::string& key, double measured,
+                   double configured, double unit, const std::string& unit_name, Judgement& out) {
+  const double ratio = measured / configured;
+  const std::string text = fmt::format("{:.3g} {} at rest, {:.3g} configured", measured / unit,
+                                       unit_name, configured / unit);
+  if (ratio > 3) {
+    out.warn(name, text, fmt::format("{}={:.2g}, or the preset of this IMU", key, measured / unit));
+  } else if (ratio < 0.1) {
+    out.warn(name, text, "the configuration is of a much worse IMU; choose its own preset");
+  } else {
+    out.ok(name, text);
+  }
+}
+
+void judge_noise(const LogFacts& facts, const imu::ImuNoise& configured, Judgement& out) {
+  constexpr int64_t kEnough = 10;  // [s]; the median of ten differences is known to 40 %
+  if (facts.rest.seconds < kEnough) {
+    return out.ok("IMU noise", fmt::format("{} s of rest, too little to tell", facts.rest.seconds));
+  }
+  judge_density("gyroscope noise", "imu.arw_deg_sqrt_h", facts.rest.gyro_noise_density,
+                configured.gyro_noise_density, kDegree / 60, "deg/sqrt(h)", out);
+  judge_density("accelerometer noise", "imu.vrw_m_s_sqrt_h", facts.rest.accel_noise_density,
+                configured.accel_noise_density, 1.0 / 60, "m/s/sqrt(h)", out);
+  constexpr double kEarthRate = 7.3e-5;
+  const double expected = std::hypot(configured.gyro_bias_sigma, configured.gyro_turn_on_sigma);
+  const std::string bias =
+      fmt::format("{:.3g} deg/h at rest, {:.3g} deg/h configured",
+                  facts.rest.gyro_mean / kDegree * 3600, expected / kDegree * 3600);
+  if (facts.rest.gyro_mean > 5 * expected + kEarthRate) {
+    out.warn("gyroscope bias", bias,
+             fmt::format("imu.gyro_turn_on_deg_h={:.0f}",
+                         std::ceil(facts.rest.gyro_mean / kDegree * 3600)));
+  } else {
+    out.ok("gyroscope bias", bias);
+  }
+}
+
+void judge_force(const LogFacts& facts, Judgement& out) {
+  if (facts.imu.count == 0) return;
+  if (const std::optional<WrongForce> wrong = wrong_force(facts.force)) {
+    return out.error("specific force", wrong->text, wrong->remedy);
+  }
+  const Eigen::Vector3d& f = facts.force.mean;
+  std::string text =
+      fmt::format("mean {:.2f}, {:.2f}, {:.2f} m/s^2 forward, right, down", f.x(), f.y(), f.z());
+  if (facts.force.factor) {
+    text += fmt::format("; {:.3f} (sigma {:.3f}) times what gravity and motion make it",
+                        facts.force.factor->value, facts.force.factor->sigma);
+  }
+  const bool has_direction = f.norm() > 0.5 * facts.force.length;  // else it rolls and loops
+  if (has_direction && -f.z() <= 0.5 * f.norm()) {
+    out.error("gravity", text + ": up is not up", "correct the axes of the import");
+  } else {
+    out.ok("gravity", text);
+  }
+}
+
+void judge_axes(const LogFacts& facts, Judgement& out) {
+  if (!facts.acceleration_match) return;
+  const Eigen::Vector2d& match = *facts.acceleration_match;
+  const std::string text = fmt::format(
+      "speed changes with the force forward by {:.2f}, to the right by {:.2f} "
+      "(correlations)",
+      match.x(), match.y());
+  constexpr double kClear = 0.6;  // of pure noise 60 pairs have 0.13
+  if (match.x() < -kClear) {
+    out.error("axes", text, "forward is backward; correct the axes of the import");
+  } else if (std::abs(match.y()) > kClear && std::abs(match.y()) > 2 * std::abs(match.x())) {
+    out.error("axes", text, "forward is sideways; correct the axes of the import");
+  } else {
+    out.ok("axes", text);
+  }
+}
+
+void judge_turns(const LogFacts& facts, Judgement& out) {
+  constexpr double kHarmless = 0.03;  // [s]; an antenna 0.3 m ahead of the axle at 10 m/s
+  constexpr double kAgree = 0.9;      // as in turn_match.cpp
+  if (!facts.turns) return out.ok("time offset", "too few turns to tell");
+  const TurnMatch& match = *facts.turns;
+  if (const std::optional<std::string> wrong = gross_mismatch(match, facts.gnss.first_ns)) {
+    return out.error("time offset", *wrong, "see there");
+  }
+  std::string text = fmt::format(
+      "stamps of the IMU are {:.3f} s (sigma {:.3f}) {} those of GNSS; {} courses, correlation "
+      "{:.3f}, gyroscopes turn {:.3f} times as much",
+      std::abs(match.offset_s), match.offset_sigma_s, match.offset_s >= 0 ? "after" : "before",
+      match.samples, match.correlation, match.slope);
+  if (match.gyro_factor) {
+    text += fmt::format(", in gentle turns {:.3f} (sigma {:.3f})", match.gyro_factor->value,
+                        match.gyro_factor->sigma);
+  }
+  if (match.correlation < kAgree) {
+    return out.warn("turns",
+                    fmt::format("courses of GNSS and turns of the gyroscopes do not agree, "
+                                "correlation {:.2f} in {} courses",
+                                match.correlation, match.samples),
+                    "look for outliers in the innovations of `foucault run`, or give the axes");
+  }
+  if (std::abs(match.offset_s) > kHarmless + 3 * match.offset_sigma_s) {
+    return out.warn("time offset", text,
+                    fmt::format("imu: {{time: {{offset_s: {:.3f}}}}} in the import's mapping",
+                                -match.offset_s));
+  }
+  out.ok("time offset", text);
+}
+
+}  // namespace
+
+std::vector<Finding> judge(const LogFacts& facts, const imu::ImuNoise& configured) {
+  // Chosen: a turn of 6 deg may be missed in the one; the driver of a run doubts the state, and a
+  // consumer IMU drifts by metres, in the other.
+  constexpr double kImuHole = 0.1, kGnssHole = 30;  // [s]
+  Judgement out;
+  judge_stream(facts.imu, "IMU", kImuHole, out);
+  judge_stream(facts.gnss, "GNSS", kGnssHole, out);
+  judge_samples(facts, out);
+  judge_overlap(facts, out);
+  judge_sigmas(facts, out);
+  judge_lever_arm(facts, out);
+  judge_force(facts, out);
+  judge_axes(facts, out);
+  judge_turns(facts, out);
+  judge_noise(facts, configured, out);
+  return out.findings;
+}
+
+}  // namespace foucault::diagnosis

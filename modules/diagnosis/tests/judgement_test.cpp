@@ -1,0 +1,158 @@
+#include "foucault/diagnosis/judgement.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "foucault/core/time.h"
+
+namespace foucault::diagnosis {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+/// Of a recording without any fault.
+LogFacts good() {
+  LogFacts facts;
+  facts.imu = {10000, 0, nanoseconds(100), 0.01, 0, 0};
+  facts.gnss = {101, 0, nanoseconds(100), 1, 0, 0};
+  facts.overlap_s = 100;
+  facts.sigmas = {0, 0.02, 1.5};
+  facts.lever_arm_m = 0.5;
+  facts.force.mean = {0, 0, -9.8};
+  facts.force.length = 9.8;
+  facts.force.seconds = 100;
+  facts.force.factor = MeasuredFactor{1, 0.01, 30};
+  facts.rest.seconds = 30;
+  facts.rest.gyro_noise_density = 4e-5;
+  facts.rest.accel_noise_density = 2e-4;
+  facts.turns = TurnMatch();
+  facts.turns->slope = facts.turns->correlation = 1;
+  facts.turns->gyro_factor = MeasuredFactor{1, 0.01, 30};
+  facts.acceleration_match = Eigen::Vector2d(0.9, 0);
+  return facts;
+}
+
+std::vector<Finding> judged(const LogFacts& facts) {
+  return judge(facts, imu::imu_preset("ADIS16465"));
+}
+
+/// All that is not ok, a line each.
+std::string complaints(const LogFacts& facts) {
+  std::string text;
+  for (const Finding& f : judged(facts)) {
+    EXPECT_EQ(f.remedy.empty(), f.severity == Severity::ok) << f.subject;
+    if (f.severity == Severity::ok) continue;
+    text += (f.severity == Severity::error ? "error " : "warning ") + f.subject + ": " + f.text +
+            " -> " + f.remedy + "\n";
+  }
+  return text;
+}
+
+TEST(Judgement, AGoodRecordingIsWell) {
+  EXPECT_EQ(complaints(good()), "");
+  EXPECT_EQ(judged(good()).size(), 11u);
+  LogFacts few = good();
+  few.turns.reset();
+  few.acceleration_match.reset();
+  few.force.factor.reset();
+  few.lever_arm_m.reset();
+  few.rest.seconds = 9;
+  EXPECT_EQ(complaints(few), "");
+}
+
+/// Each change and what is said of it.
+class Complaint : public ::testing::Test {
+ protected:
+  LogFacts facts_ = good();
+};
+
+TEST_F(Complaint, Streams) {
+  facts_.imu.longest_hole_s = 0.11;
+  facts_.gnss.longest_hole_s = 31;
+  EXPECT_THAT(complaints(facts_), AllOf(HasSubstr("warning IMU:"), HasSubstr("warning GNSS:")));
+  facts_ = good();
+  facts_.imu.interval_s = 0.5;
+  EXPECT_THAT(complaints(facts_), HasSubstr("record more often"));
+  facts_ = LogFacts();
+  EXPECT_THAT(complaints(facts_), AllOf(HasSubstr("error IMU: no data"), HasSubstr("error GNSS")));
+}
+
+TEST_F(Complaint, Overlap) {
+  facts_.gnss.first_ns = nanoseconds(60);
+  facts_.gnss.last_ns = nanoseconds(160);
+  facts_.overlap_s = 40;
+  EXPECT_THAT(complaints(facts_), HasSubstr("warning overlap: 40.0 s in common"));
+  facts_.gnss.first_ns = nanoseconds(200);
+  facts_.overlap_s = -100;
+  EXPECT_THAT(complaints(facts_), HasSubstr("error overlap: IMU and GNSS have no time in common"));
+}
+
+TEST_F(Complaint, SamplesAndFixesThatWereLeftOut) {
+  facts_.bad_samples = {"3 IMU samples"};
+  facts_.bad_fixes = {"4 fixes"};
+  EXPECT_THAT(complaints(facts_), AllOf(HasSubstr("warning IMU samples: 3 IMU samples"),
+                                        HasSubstr("warning GNSS fixes: 4 fixes")));
+}
+
+TEST_F(Complaint, Sigmas) {
+  facts_.sigmas.bad = 5;
+  EXPECT_THAT(complaints(facts_), HasSubstr("warning sigmas: 5 of 101 fixes have a sigma that"));
+  facts_.sigmas.bad = 101;
+  EXPECT_THAT(complaints(facts_), ::testing::Not(HasSubstr("which no receiver has")));
+  facts_.sigmas = {0, 1e-5, 1};
+  EXPECT_THAT(complaints(facts_), HasSubstr("which no receiver has"));
+  facts_.sigmas = {0, 1, 2000};
+  EXPECT_THAT(complaints(facts_), HasSubstr("which no receiver has"));
+  facts_.sigmas = {0, 0.1, 1};
+  facts_.rest.fix_pairs = 20;
+  facts_.rest.fix_scatter = 4.2;
+  EXPECT_THAT(complaints(facts_), HasSubstr("scatter 4.2 times as much -> gnss.sigma_scale=5"));
+}
+
+TEST_F(Complaint, LeverArm) {
+  facts_.lever_arm_m = 0;
+  EXPECT_THAT(complaints(facts_), HasSubstr("warning lever arm: zero"));
+  facts_.lever_arm_m = 50;
+  EXPECT_THAT(complaints(facts_), HasSubstr("is it in metres"));
+}
+
+TEST_F(Complaint, Force) {
+  facts_.force.factor->value = 0.5;
+  EXPECT_THAT(complaints(facts_), HasSubstr("error specific force: specific force is 0.5"));
+  facts_.force.factor->value = 1;
+  facts_.force.mean.z() = 9.8;
+  EXPECT_THAT(complaints(facts_), HasSubstr("error gravity:"));
+  facts_.force.mean.z() = 2;  // rolls and loops have no up
+  EXPECT_EQ(complaints(facts_), "");
+}
+
+TEST_F(Complaint, Axes) {
+  facts_.acceleration_match = Eigen::Vector2d(-0.8, 0);
+  EXPECT_THAT(complaints(facts_), HasSubstr("forward is backward"));
+  facts_.acceleration_match = Eigen::Vector2d(0.2, -0.8);
+  EXPECT_THAT(complaints(facts_), HasSubstr("forward is sideways"));
+}
+
+TEST_F(Complaint, Turns) {
+  facts_.turns->offset_s = -0.2;
+  EXPECT_THAT(complaints(facts_), AllOf(HasSubstr("0.200 s (sigma 0.000) before those of GNSS"),
+                                        HasSubstr("offset_s: 0.200")));
+  facts_.turns->offset_s = 7;
+  facts_.turns->residual_share = 0;
+  EXPECT_THAT(complaints(facts_), HasSubstr("error time offset: stamps of the IMU are 7.00 s"));
+  facts_.turns->correlation = 0.7;
+  EXPECT_THAT(complaints(facts_), HasSubstr("do not agree, correlation 0.70"));
+}
+
+TEST_F(Complaint, Noise) {
+  facts_.rest.gyro_noise_density *= 10;
+  facts_.rest.accel_noise_density /= 100;
+  facts_.rest.gyro_mean = 0.01;
+  EXPECT_THAT(complaints(facts_),
+              AllOf(HasSubstr("warning gyroscope noise"), HasSubstr("of a much worse IMU"),
+                    HasSubstr("gyroscope bias: 2.06e+03 deg/h at rest")));
+}
+
+}  // namespace
+}  // namespace foucault::diagnosis

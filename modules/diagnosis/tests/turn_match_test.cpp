@@ -1,0 +1,125 @@
+#include "foucault/diagnosis/turn_match.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "foucault/core/constants.h"
+#include "level_drive.h"
+
+namespace foucault::diagnosis {
+namespace {
+
+using ::testing::HasSubstr;
+
+TurnMatch match_of(const LevelDrive& drive, double longest = 1, double step = 0.02) {
+  TurnMatcher matcher(longest, step);
+  drive.feed(matcher);
+  const std::optional<TurnMatch> best = matcher.best();
+  EXPECT_TRUE(best);
+  return best.value_or(TurnMatch());
+}
+
+TEST(TurnMatch, GyroscopesAndCoursesTurnAlike) {
+  const TurnMatch match = match_of(winding());
+  EXPECT_NEAR(match.offset_s, 0, 0.01);
+  EXPECT_NEAR(match.slope, 1, 0.03);  // courses are chords of a second
+  EXPECT_GT(match.correlation, 0.99);
+  EXPECT_GT(match.samples, 150);
+  EXPECT_GT(match.turned, 20);
+  EXPECT_FALSE(gross_mismatch(match, LevelDrive::kStart));
+}
+
+TEST(TurnMatch, FindsOffsetsToAPartOfTheGrid) {
+  for (const double late : {0.275, -0.11, -0.6}) {
+    LevelDrive drive = winding();
+    drive.imu_late = late;
+    const TurnMatch match = match_of(drive);
+    EXPECT_NEAR(match.offset_s, late, 0.01);
+    EXPECT_LT(match.residual_share, 0.3);
+  }
+}
+
+TEST(TurnMatch, FindsTheFactorInGentleTurns) {
+  LevelDrive drive = winding();
+  drive.speed = [](double) { return 4.0; };
+  drive.gyro_factor = 1.3;
+  const TurnMatch match = match_of(drive);
+  ASSERT_TRUE(match.gyro_factor);
+  EXPECT_NEAR(match.gyro_factor->value, 1.3, 0.04);
+  EXPECT_THAT(wrong_rates(match).value_or(""), HasSubstr("no gyroscope's scale factor"));
+}
+
+TEST(TurnMatch, NamesUnitsAxesAndClocks) {
+  const auto wrong = [](double factor, double late) {
+    LevelDrive drive = winding();
+    drive.gyro_factor = factor;
+    drive.imu_late = late;
+    return gross_mismatch(match_of(drive, 25, 0.25), LevelDrive::kStart).value_or("");
+  };
+  EXPECT_THAT(wrong(180 / kPi, 0), HasSubstr("in deg/s, not rad/s"));
+  EXPECT_THAT(wrong(kPi / 180, 0), HasSubstr("converted to radians twice"));
+  EXPECT_THAT(wrong(-1, 0), HasSubstr("turn against the course"));
+  EXPECT_THAT(wrong(1, 5), HasSubstr("5.00 s after those of GNSS; correct"));
+  EXPECT_THAT(wrong(1, -18), HasSubstr("before those of GNSS, as GPS time (18 s ahead) is of UTC"));
+  EXPECT_EQ(wrong(1, 0), "");
+}
+
+TEST(TurnMatch, StraightSlowRareAndHoleyWaysTellNothing) {
+  LevelDrive straight, slow = winding(), rare = winding();
+  slow.speed = [](double) { return 1.0; };
+  rare.fix_interval = 5;
+  for (const LevelDrive& drive : {straight, slow, rare}) {
+    TurnMatcher matcher(1, 0.02);
+    drive.feed(matcher);
+    EXPECT_FALSE(matcher.best());
+  }
+  TurnMatcher matcher(1, 0.02);
+  for (const Measurement& m : winding().measurements()) {
+    const double t = seconds_between(LevelDrive::kStart, stamp(m));
+    if (const auto* fix = std::get_if<GnssFix>(&m)) matcher.add(*fix);
+    const auto* increment = std::get_if<ImuIncrement>(&m);
+    if (increment && t - std::floor(t) > 0.5) matcher.add(*increment);
+  }
+  EXPECT_EQ(matcher.samples(), 0);
+}
+
+/// A course that turns by more than a vehicle can is an outlier's.
+TEST(TurnMatch, OutliersAreLeftOut) {
+  TurnMatcher matcher(1, 0.02), clean(1, 0.02);
+  winding().feed(clean);
+  int fixes = 0;
+  for (const Measurement& m : winding().measurements()) {
+    if (const auto* increment = std::get_if<ImuIncrement>(&m)) matcher.add(*increment);
+    if (const auto* fix = std::get_if<GnssFix>(&m)) {
+      GnssFix bad = *fix;
+      if (++fixes % 20 == 0) bad.antenna.longitude += 1e-5;  // 49 m
+      if (fixes % 31 == 0) bad.position_covariance(0, 0) = std::nan("");
+      matcher.add(bad);
+    }
+  }
+  EXPECT_LT(matcher.samples(), clean.samples());
+  EXPECT_GT(matcher.best()->correlation, 0.9);
+}
+
+/// Where every offset fits as well as any other there is nothing to complain about.
+TEST(TurnMatch, ACircleTellsNoOffset) {
+  TurnMatch match;
+  match.offset_s = 7;
+  match.correlation = 0.99;
+  match.slope = 1;
+  match.residual_share = 0.9;
+  EXPECT_FALSE(gross_mismatch(match, 0).has_value());
+  match.residual_share = 0.01;
+  EXPECT_TRUE(gross_mismatch(match, 0).has_value());
+}
+
+TEST(TurnMatch, WhatDoesNotCorrelateIsNotJudged) {
+  TurnMatch match;
+  match.correlation = 0.5;
+  match.slope = 57.3;
+  EXPECT_FALSE(wrong_rates(match));
+  EXPECT_FALSE(gross_mismatch(match, 0));
+}
+
+}  // namespace
+}  // namespace foucault::diagnosis
