@@ -339,8 +339,6 @@ NmeaSigma nmea_sigma(FixQuality quality, std::optional<double> hdop) {
   return {horizontal * dilution, 2 * horizontal * dilution};
 }
 
-namespace rawlog {
-
 std::optional<GnssFix> decode_fix(const mrpt::obs::CObservationGPS& gps, int64_t t_ns) {
   std::optional<GnssFix> fix = position_of(gps);
   if (!fix) return std::nullopt;
@@ -407,7 +405,5 @@ void encode_reference(const ReferencePose& pose, mrpt::obs::CObservationGPS& gps
   gps.has_satellite_timestamp = true;
   gps.setMsg(message);
 }
-
-}  // namespace rawlog
 
 }  // namespace foucault::rawlog

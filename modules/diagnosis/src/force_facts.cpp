@@ -53,13 +53,17 @@ std::optional<WrongForce> wrong_factor(const MeasuredFactor& factor) {
       "correct unit or scale in the import"};
 }
 
-std::optional<WrongForce> wrong_mean(double length, double seconds) {
-  if (const std::optional<WrongForce> wrong = wrong_unit(length / kStandardGravity)) return wrong;
-  const bool too_weak = length < kWeakest && seconds >= kWeakFor;
-  if (!too_weak && length < kStrongest) return std::nullopt;
+/// Rest has one direction; motion without gravity, which may be as long, has not.
+std::optional<WrongForce> wrong_mean(const ForceFacts& force) {
+  constexpr double kOneDirection = 0.9;  // of the length
+  const bool rests = force.mean.norm() > kOneDirection * force.length;
+  const std::optional<WrongForce> unit = wrong_unit(force.length / kStandardGravity);
+  if (rests && unit) return unit;
+  const bool too_weak = force.length < kWeakest && force.seconds >= kWeakFor;
+  if (!too_weak && force.length < kStrongest) return std::nullopt;
   return WrongForce{fmt::format("specific force is {:.3g} m/s^2 where gravity is 9.8 (wrong units, "
                                 "or gravity taken out)",
-                                length),
+                                force.length),
                     "name the unit in the import"};
 }
 
@@ -82,7 +86,7 @@ ForceFacts MeanForce::facts() const {
 
 std::optional<WrongForce> wrong_force(const ForceFacts& force) {
   if (force.factor) return wrong_factor(*force.factor);
-  return wrong_mean(force.length, force.seconds);
+  return wrong_mean(force);
 }
 
 }  // namespace foucault::diagnosis

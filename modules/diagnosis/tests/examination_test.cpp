@@ -15,25 +15,27 @@ namespace {
 
 using ::testing::HasSubstr;
 
-ScenarioOptions city(int64_t seed = 5) {
-  ScenarioOptions scenario;
+simulation::ScenarioOptions city(int64_t seed = 5) {
+  simulation::ScenarioOptions scenario;
   scenario.duration_s = 400;
   scenario.seed = seed;
   scenario.imu_rate_hz = 100;
   return scenario;
 }
 
-LogFacts facts_of(const ScenarioOptions& scenario, const std::vector<Fault>& faults) {
-  FaultySource source(std::make_unique<SimulatedSource>(scenario, imu_preset("ADIS16465")), faults,
-                      1);
-  Examination examination(imu_preset("ADIS16465"), source.mounting());
+LogFacts facts_of(const simulation::ScenarioOptions& scenario,
+                  const std::vector<simulation::Fault>& faults) {
+  simulation::FaultySource source(
+      std::make_unique<simulation::SimulatedSource>(scenario, imu::imu_preset("ADIS16465")), faults,
+      1);
+  Examination examination(imu::imu_preset("ADIS16465"), source.mounting());
   while (const std::optional<Measurement> m = source.next()) examination.add(*m);
   return examination.facts();
 }
 
-std::vector<Finding> findings_of(const ScenarioOptions& scenario,
-                                 const std::vector<Fault>& faults) {
-  return judge(facts_of(scenario, faults), imu_preset("ADIS16465"));
+std::vector<Finding> findings_of(const simulation::ScenarioOptions& scenario,
+                                 const std::vector<simulation::Fault>& faults) {
+  return judge(facts_of(scenario, faults), imu::imu_preset("ADIS16465"));
 }
 
 Finding finding(const std::vector<Finding>& findings, const std::string& subject) {
@@ -55,7 +57,8 @@ INSTANTIATE_TEST_SUITE_P(Offsets, TimeOffset, ::testing::Values(0.0, 0.275, -0.1
 
 /// The antenna is 0.1 m ahead of the axle, 10 ms at the speed of this trip.
 TEST_P(TimeOffset, IsFound) {
-  const LogFacts facts = facts_of(city(), {{FaultKind::imu_stamps_offset, 0, 1e9, GetParam()}});
+  const LogFacts facts =
+      facts_of(city(), {{simulation::FaultKind::imu_stamps_offset, 0, 1e9, GetParam()}});
   ASSERT_TRUE(facts.turns.has_value());
   EXPECT_NEAR(facts.turns->offset_s, GetParam(), 0.02);
   EXPECT_GT(facts.turns->correlation, 0.97);
@@ -63,25 +66,30 @@ TEST_P(TimeOffset, IsFound) {
 }
 
 TEST(Examination, NamesClocksUnitsAndAxes) {
-  const auto severity_of = [](FaultKind kind, double size, const std::string& subject) {
+  const auto severity_of = [](simulation::FaultKind kind, double size, const std::string& subject) {
     const Finding f = finding(findings_of(city(), {{kind, 0, 1e9, size}}), subject);
     EXPECT_NE(f.remedy, "") << subject;
     return f.severity;
   };
-  EXPECT_EQ(severity_of(FaultKind::imu_stamps_offset, 0.275, "time offset"), Severity::warning);
-  EXPECT_EQ(severity_of(FaultKind::imu_stamps_offset, 18, "time offset"), Severity::error);
-  EXPECT_EQ(severity_of(FaultKind::imu_stamps_offset, 3600, "overlap"), Severity::error);
-  EXPECT_EQ(severity_of(FaultKind::imu_gyro_in_degrees, 0, "time offset"), Severity::error);
-  EXPECT_EQ(severity_of(FaultKind::imu_accel_in_g, 0, "specific force"), Severity::error);
-  EXPECT_EQ(severity_of(FaultKind::imu_axes_turned, 0, "gravity"), Severity::error);
-  EXPECT_EQ(severity_of(FaultKind::fix_sigma_zero, 0, "sigmas"), Severity::warning);
-  EXPECT_EQ(severity_of(FaultKind::fix_sigma_scale, 0.1, "sigmas"), Severity::warning);
+  EXPECT_EQ(severity_of(simulation::FaultKind::imu_stamps_offset, 0.275, "time offset"),
+            Severity::warning);
+  EXPECT_EQ(severity_of(simulation::FaultKind::imu_stamps_offset, 18, "time offset"),
+            Severity::error);
+  EXPECT_EQ(severity_of(simulation::FaultKind::imu_stamps_offset, 3600, "overlap"),
+            Severity::error);
+  EXPECT_EQ(severity_of(simulation::FaultKind::imu_gyro_in_degrees, 0, "time offset"),
+            Severity::error);
+  EXPECT_EQ(severity_of(simulation::FaultKind::imu_accel_in_g, 0, "specific force"),
+            Severity::error);
+  EXPECT_EQ(severity_of(simulation::FaultKind::imu_axes_turned, 0, "gravity"), Severity::error);
+  EXPECT_EQ(severity_of(simulation::FaultKind::fix_sigma_zero, 0, "sigmas"), Severity::warning);
+  EXPECT_EQ(severity_of(simulation::FaultKind::fix_sigma_scale, 0.1, "sigmas"), Severity::warning);
 }
 
 /// Fixes that are no positions, before all others and among them.
-class WithBadFixes : public Source {
+class WithBadFixes : public state::Source {
  public:
-  explicit WithBadFixes(std::unique_ptr<Source> source) : source_(std::move(source)) {}
+  explicit WithBadFixes(std::unique_ptr<state::Source> source) : source_(std::move(source)) {}
   std::optional<Measurement> next() override {
     std::optional<Measurement> m = source_->next();
     if (auto* fix = m ? std::get_if<GnssFix>(&*m) : nullptr) {
@@ -91,19 +99,19 @@ class WithBadFixes : public Source {
     }
     return m;
   }
-  const Mounting& mounting() const override { return source_->mounting(); }
+  const state::Mounting& mounting() const override { return source_->mounting(); }
   double progress() const override { return source_->progress(); }
 
  private:
-  std::unique_ptr<Source> source_;
+  std::unique_ptr<state::Source> source_;
   int fixes_ = 0;
 };
 
 TEST(Examination, FixesThatAreNoPositionsBlindNothingAndAreNamed) {
-  WithBadFixes source(std::make_unique<FaultySource>(
-      std::make_unique<SimulatedSource>(city(), imu_preset("ADIS16465")),
-      std::vector<Fault>{{FaultKind::imu_stamps_offset, 0, 1e9, 18}}, 1));
-  Examination examination(imu_preset("ADIS16465"), source.mounting());
+  WithBadFixes source(std::make_unique<simulation::FaultySource>(
+      std::make_unique<simulation::SimulatedSource>(city(), imu::imu_preset("ADIS16465")),
+      std::vector<simulation::Fault>{{simulation::FaultKind::imu_stamps_offset, 0, 1e9, 18}}, 1));
+  Examination examination(imu::imu_preset("ADIS16465"), source.mounting());
   while (const std::optional<Measurement> m = source.next()) examination.add(*m);
   EXPECT_EQ(finding(examination.findings(), "time offset").severity, Severity::error);
   EXPECT_EQ(finding(examination.findings(), "GNSS fixes").severity, Severity::warning);
@@ -111,7 +119,7 @@ TEST(Examination, FixesThatAreNoPositionsBlindNothingAndAreNamed) {
 }
 
 /// Sensors that measure a multiple of what they should.
-class Scaled : public Source {
+class Scaled : public state::Source {
  public:
   Scaled(double gyro, double accel) : gyro_(gyro), accel_(accel) {}
   std::optional<Measurement> next() override {
@@ -122,16 +130,16 @@ class Scaled : public Source {
     }
     return m;
   }
-  const Mounting& mounting() const override { return source_.mounting(); }
+  const state::Mounting& mounting() const override { return source_.mounting(); }
   double progress() const override { return source_.progress(); }
 
  private:
   double gyro_, accel_;
-  SimulatedSource source_{city(), imu_preset("ADIS16465")};
+  simulation::SimulatedSource source_{city(), imu::imu_preset("ADIS16465")};
 };
 
-std::vector<Finding> findings_of(Source& source) {
-  Examination examination(imu_preset("ADIS16465"), source.mounting());
+std::vector<Finding> findings_of(state::Source& source) {
+  Examination examination(imu::imu_preset("ADIS16465"), source.mounting());
   while (const std::optional<Measurement> m = source.next()) examination.add(*m);
   return examination.findings();
 }
@@ -158,30 +166,32 @@ TEST(Examination, FactorsThatSensorsHaveAreNot) {
 }
 
 TEST(Examination, ForwardThatIsBackward) {
-  ScenarioOptions scenario = city();
-  SimulatedSource source(scenario, imu_preset("ADIS16465"));
-  const Mounting turned{Eigen::Quaterniond(Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitZ()))};
-  Examination examination(imu_preset("ADIS16465"), turned);
+  simulation::ScenarioOptions scenario = city();
+  simulation::SimulatedSource source(scenario, imu::imu_preset("ADIS16465"));
+  const state::Mounting turned{
+      Eigen::Quaterniond(Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitZ()))};
+  Examination examination(imu::imu_preset("ADIS16465"), turned);
   while (const std::optional<Measurement> m = source.next()) examination.add(*m);
   EXPECT_EQ(finding(examination.findings(), "axes").severity, Severity::error);
 }
 
 TEST(Examination, NoiseAgainstTheConfiguration) {
   const LogFacts facts = facts_of(city(), {});
-  const ImuNoise noise = imu_preset("ADIS16465");
+  const imu::ImuNoise noise = imu::imu_preset("ADIS16465");
   ASSERT_GT(facts.rest.seconds, 30);
   // The largest of three axes, from some forty pairs each: 20 % of each, and the maximum above.
   EXPECT_NEAR(facts.rest.gyro_noise_density / noise.gyro_noise_density, 1.15, 0.4);
   EXPECT_NEAR(facts.rest.accel_noise_density / noise.accel_noise_density, 1.15, 0.4);
-  ImuNoise better = noise;
+  imu::ImuNoise better = noise;
   better.gyro_noise_density /= 10;
   EXPECT_EQ(finding(judge(facts, better), "gyroscope noise").severity, Severity::warning);
 }
 
 TEST(Examination, HolesAndLeverArm) {
-  ScenarioOptions scenario = city();
+  simulation::ScenarioOptions scenario = city();
   scenario.lever_arm_m.setZero();
-  const std::vector<Finding> findings = findings_of(scenario, {{FaultKind::imu_gap, 200, 5}});
+  const std::vector<Finding> findings =
+      findings_of(scenario, {{simulation::FaultKind::imu_gap, 200, 5}});
   EXPECT_EQ(finding(findings, "IMU").severity, Severity::warning);
   EXPECT_THAT(finding(findings, "IMU").text, HasSubstr("1 holes, the longest 5"));
   EXPECT_EQ(finding(findings, "lever arm").severity, Severity::warning);
@@ -189,7 +199,7 @@ TEST(Examination, HolesAndLeverArm) {
 
 /// What is not used of a recording does not tell anything about the rest of it.
 TEST(Examination, AdmitsWhatMayBeUsed) {
-  Examination examination(imu_preset("ADIS16465"), Mounting());
+  Examination examination(imu::imu_preset("ADIS16465"), state::Mounting());
   ImuIncrement increment;
   increment.t_end_ns = 10'000'000;
   increment.dvel_b = {0, 0, -0.098};
@@ -211,8 +221,8 @@ TEST(Examination, AdmitsWhatMayBeUsed) {
 TEST(Examination, FixesThatOptionsExcludeTellNothingOfTurns) {
   GnssOptions options;
   options.min_quality = "fixed_rtk";
-  SimulatedSource source(city(), imu_preset("ADIS16465"));
-  Examination examination(imu_preset("ADIS16465"), source.mounting(), options);
+  simulation::SimulatedSource source(city(), imu::imu_preset("ADIS16465"));
+  Examination examination(imu::imu_preset("ADIS16465"), source.mounting(), options);
   while (std::optional<Measurement> m = source.next()) {
     if (auto* fix = std::get_if<GnssFix>(&*m)) fix->quality = FixQuality::single;
     examination.add(*m);
@@ -223,7 +233,7 @@ TEST(Examination, FixesThatOptionsExcludeTellNothingOfTurns) {
 
 TEST(Examination, EndsARunThatIsUseless) {
   Scaled source(1, 0.1);
-  Examination examination(imu_preset("ADIS16465"), source.mounting());
+  Examination examination(imu::imu_preset("ADIS16465"), source.mounting());
   const auto run = [&] {
     while (const std::optional<Measurement> m = source.next()) {
       examination.add(*m);
@@ -235,12 +245,12 @@ TEST(Examination, EndsARunThatIsUseless) {
 
 /// What a run says at its end; of samples and fixes that were left out it has spoken itself.
 TEST(Examination, WarnsOfAllThatIsNotWell) {
-  WithBadFixes source(std::make_unique<FaultySource>(
-      std::make_unique<SimulatedSource>(city(), imu_preset("ADIS16465")),
-      std::vector<Fault>{{FaultKind::imu_gap, 200, 5}}, 1));
-  Examination examination(imu_preset("ADIS16465"), source.mounting());
+  WithBadFixes source(std::make_unique<simulation::FaultySource>(
+      std::make_unique<simulation::SimulatedSource>(city(), imu::imu_preset("ADIS16465")),
+      std::vector<simulation::Fault>{{simulation::FaultKind::imu_gap, 200, 5}}, 1));
+  Examination examination(imu::imu_preset("ADIS16465"), source.mounting());
   while (const std::optional<Measurement> m = source.next()) examination.add(*m);
-  const std::vector<Notice> warnings = examination.warnings();
+  const std::vector<state::Notice> warnings = examination.warnings();
   ASSERT_EQ(warnings.size(), 1u);
   EXPECT_THAT(warnings[0].text, HasSubstr("1 holes, the longest 5"));
   EXPECT_EQ(warnings[0].t_ns, examination.facts().imu.first_ns);

@@ -12,6 +12,7 @@ constexpr double kG = 9.80665;
 
 std::string wrong_mean(double length, double seconds = 10) {
   ForceFacts facts;
+  facts.mean.z() = -length;
   facts.length = length;
   facts.seconds = seconds;
   const auto wrong = wrong_force(facts);

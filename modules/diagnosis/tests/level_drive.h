@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <random>
@@ -58,6 +59,9 @@ struct LevelDrive {
       out.emplace_back(increment);
       p += kStep * velocity(t + kStep / 2);
     }
+    std::stable_sort(out.begin(), out.end(), [](const Measurement& a, const Measurement& b) {
+      return stamp(a) < stamp(b);
+    });
     return out;
   }
 
