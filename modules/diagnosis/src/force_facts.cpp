@@ -25,6 +25,7 @@ constexpr double kWeakFor = 60;  // [s]
 /// the cheapest, MPU-6050: 3 %, 80 mg), 11 % of gravity together; twice that is no IMU's.
 constexpr double kLargestError = 0.2;
 constexpr double kSigmas = 5;  // one in two million
+constexpr double kOneFactor = 0.05;
 
 /// The unit that makes m/s^2 this many times as large, if it is one of the usual ones. Those of mg
 /// and cm/s^2 are 2 % apart: the nearest.
@@ -44,9 +45,11 @@ std::optional<WrongForce> wrong_unit(double factor) {
                     "name the unit in the import"};
 }
 
+/// Units have one factor; without gravity each window has its own, and a sigma of 10 % or more.
 std::optional<WrongForce> wrong_factor(const MeasuredFactor& factor) {
   if (std::abs(factor.value - 1) <= kLargestError + kSigmas * factor.sigma) return std::nullopt;
-  if (const std::optional<WrongForce> wrong = wrong_unit(factor.value)) return wrong;
+  const std::optional<WrongForce> unit = wrong_unit(factor.value);
+  if (unit && factor.sigma < kOneFactor * factor.value) return unit;
   return WrongForce{
       fmt::format("specific force is {:.3f} (sigma {:.3f}) times what gravity and the motion of "
                   "the fixes make it, {} windows; no accelerometer's scale factor is so far off",

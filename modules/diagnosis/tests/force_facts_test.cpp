@@ -60,7 +60,7 @@ TEST(WrongForce, AFactorDecidesWhereThereIsOne) {
   EXPECT_EQ(wrong_factor(1.4, 0.1), "");  // it is not sure
   EXPECT_THAT(wrong_factor(1.4), HasSubstr("1.400 (sigma 0.010) times what gravity"));
   EXPECT_THAT(wrong_factor(1.4), HasSubstr("correct unit or scale"));
-  EXPECT_THAT(wrong_factor(0.102), HasSubstr("in g, not"));
+  EXPECT_THAT(wrong_factor(0.102, 0.001), HasSubstr("in g, not"));
   ForceFacts turning;
   turning.length = 40 * kG;
   turning.factor = MeasuredFactor{1, 0.01, 20};

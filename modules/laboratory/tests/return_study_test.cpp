@@ -76,7 +76,7 @@ TEST(ReturnStudy, ASimulatedTripWithoutALog) {
     }};
   };
   const ReturnOutcome outcome = study_return({"", 1, 60, "ekf"}, simulated);
-  EXPECT_EQ(outcome.outages, 5) << "from 200 s on, a minute between them, of 900 s";
+  EXPECT_EQ(outcome.outages, 6) << "from 200 s on, a minute each and between them, of 900 s";
   EXPECT_EQ(outcome.ratio(), 1);
 }
 
