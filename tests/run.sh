@@ -12,7 +12,7 @@ fail() {
 }
 
 build=build-tests
-options=(-DCMAKE_BUILD_TYPE=Release -DFOUCAULT_TESTS=ON)
+options=(-DCMAKE_BUILD_TYPE=Release -DFOUCAULT_TESTS=ON -DFOUCAULT_UNITY=ON)
 if [[ "${1:-}" == --sanitize ]]; then
   shift
   build=build-sanitize

@@ -30,7 +30,7 @@ class RunOutput : public state::Sink {
   void observation(const state::ObservationResult& result) override;
   void notice(const state::Notice& notice) override;
   bool wants_predictions() const override { return true; }
-  bool wants_warnings() const override { return true; }
+  void warning(const state::Notice& n) override { notice(n); }
   void prediction(const state::PredictionResult& prediction) override;
   /// Why the log broke off, for the report; the command says it at its end.
   void damage(const std::string& text);

@@ -12,7 +12,7 @@ using Eigen::Vector2d;
 
 constexpr double kSpacing = 0.95;           // [s] between fixes, 1 s but for jitter
 constexpr double kLongest = 2.5;            // [s]; chosen
-constexpr double kFewest = 60;              // pairs; a correlation of noise is below 0.4 (3 sigmas)
+constexpr double kFewestPairs = 60;         // pairs; a correlation of noise is below 0.4 (3 sigmas)
 constexpr double kLeastAcceleration = 0.2;  // [m/s^2], standard deviation; chosen: roads tilt it
 
 }  // namespace
@@ -51,7 +51,7 @@ void AccelerationMatch::pair(double acceleration, const Vector2d& force) {
 }
 
 std::optional<Vector2d> AccelerationMatch::correlation() const {
-  if (n_ < kFewest) return std::nullopt;
+  if (n_ < kFewestPairs) return std::nullopt;
   const double variance = aa_ / n_ - a_ * a_ / (n_ * n_);
   if (variance < kLeastAcceleration * kLeastAcceleration) return std::nullopt;
   const Vector2d covariance = af_ / n_ - a_ / n_ * f_ / n_;

@@ -19,7 +19,7 @@ constexpr double kFastest = 1000;  // [m/s]
 /// Chosen: nearer errors are for the judge of innovations, who knows the state.
 constexpr double kFarAway = 10000;  // [m]
 /// Chosen: receivers that report a wrong place do so for seconds, until they have a fix.
-constexpr double kLongestDoubt = 60;  // [s]
+constexpr double kLongestContradiction = 60;  // [s]
 /// Chosen, for tables at the rate of the IMU (50 Hz) and receivers with few digits: two of ten may
 /// be cut short by lost fixes. Of a receiver in motion no position comes twice.
 constexpr std::size_t kRuns = 10;
@@ -122,7 +122,7 @@ bool FixGuard::in_reach(const GnssFix& fix) {
   }
   go_on(doubted_, fix);
   const bool more = doubted_->fixes > believed_->fixes;
-  const bool longer = seconds_between(doubted_->since_ns, fix.t_ns) > kLongestDoubt;
+  const bool longer = seconds_between(doubted_->since_ns, fix.t_ns) > kLongestContradiction;
   if (!more && !longer) return false;
   believed_ = doubted_;
   doubted_.reset();

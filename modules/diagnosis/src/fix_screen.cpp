@@ -11,7 +11,7 @@ namespace foucault::diagnosis {
 namespace {
 
 constexpr double kAcceleration = 8;  // [m/s^2], the grip of a road (0.8 g)
-constexpr double kSigmas = 5;        // three fixes' sigmas summed: one in two million at least
+constexpr double kScreenSigmas = 5;  // three fixes' sigmas summed: one in two million at least
 constexpr double kLongestWait = 3;   // [s]; chosen: fixes at 1 Hz, of which one is missing
 
 /// Distance of a fix from the line through two others, which a vehicle can explain by its
@@ -31,7 +31,8 @@ Deviation deviation(const GnssFix& fix, const GnssFix& a, const GnssFix& b) {
   const double sigma = geodesy::horizontal_sigma(fix.position_covariance) +
                        std::abs(1 - share) * geodesy::horizontal_sigma(a.position_covariance) +
                        std::abs(share) * geodesy::horizontal_sigma(b.position_covariance);
-  return {on_line.head<2>().norm(), 0.5 * kAcceleration * std::abs(to_a * to_b) + kSigmas * sigma};
+  return {on_line.head<2>().norm(),
+          0.5 * kAcceleration * std::abs(to_a * to_b) + kScreenSigmas * sigma};
 }
 
 }  // namespace

@@ -24,7 +24,7 @@ constexpr double kWeakFor = 60;  // [s]
 /// Scale factors of consumer IMUs are within 3 %, their offsets within 0.8 m/s^2 (data sheets of
 /// the cheapest, MPU-6050: 3 %, 80 mg), 11 % of gravity together; twice that is no IMU's.
 constexpr double kLargestError = 0.2;
-constexpr double kSigmas = 5;  // one in two million
+constexpr double kFactorSigmas = 5;  // one in two million
 constexpr double kOneFactor = 0.05;
 
 /// The unit that makes m/s^2 this many times as large, if it is one of the usual ones. Those of mg
@@ -47,7 +47,8 @@ std::optional<WrongForce> wrong_unit(double factor) {
 
 /// Units have one factor; without gravity each window has its own, and a sigma of 10 % or more.
 std::optional<WrongForce> wrong_factor(const MeasuredFactor& factor) {
-  if (std::abs(factor.value - 1) <= kLargestError + kSigmas * factor.sigma) return std::nullopt;
+  if (std::abs(factor.value - 1) <= kLargestError + kFactorSigmas * factor.sigma)
+    return std::nullopt;
   const std::optional<WrongForce> unit = wrong_unit(factor.value);
   if (unit && factor.sigma < kOneFactor * factor.value) return unit;
   return WrongForce{

@@ -22,9 +22,9 @@ constexpr double kLongestWindow = 20;  // [s]
 constexpr double kLargestTurn = 1;     // [rad]
 constexpr double kLargestHole = 0.1;   // [s], over which bumps may be missed
 /// A tenth of gravity, so that ten windows tell the factor to 4 %, a fifth of what is judged.
-constexpr double kPrecise = 1;       // [m/s^2], sigma of the acceleration by fixes, any axis
-constexpr std::size_t kFewest = 10;  // windows
-constexpr std::size_t kMost = 1000;  // windows; chosen: bounds memory, 0.4 %
+constexpr double kPrecise = 1;              // [m/s^2], sigma of the acceleration by fixes, any axis
+constexpr std::size_t kFewestWindows = 10;  // windows
+constexpr std::size_t kMost = 1000;         // windows; chosen: bounds memory, 0.4 %
 /// Where fixes tell of more, one of them may be wrong: 5 m off make 20 m/s^2 at 1 Hz. With 30 % of
 /// outliers of 50 to 500 m rtk_car was refused without this.
 constexpr double kGentle = 4;  // [m/s^2]
@@ -125,7 +125,7 @@ void ForceMatch::compare(const Point& b) {
 
 /// The median of n values has 1.25 sigma / sqrt(n); their sigma is 1.48 of the median deviation.
 std::optional<MeasuredFactor> ForceMatch::factor() const {
-  if (ratios_.size() < kFewest) return std::nullopt;
+  if (ratios_.size() < kFewestWindows) return std::nullopt;
   MeasuredFactor factor;
   factor.value = median(ratios_);
   std::vector<double> deviations;

@@ -19,7 +19,7 @@ constexpr double kGrid = 0.02;        // [s] of the turns: 50 Hz, no vehicle tur
 constexpr double kLargestHole = 0.1;  // [s], in which a turn may be missed: 6 deg at kFastestTurn
 constexpr double kUpMemory = 20;      // [s]; chosen: longer than a bend or an acceleration
 /// A way of 15 sigmas has a course to 0.1 rad, a tenth of a bend. That by way and time is chosen.
-constexpr double kSigmas = 15;
+constexpr double kWaySigmas = 15;
 constexpr double kShortestWay = 2;        // [m]
 constexpr double kShortestCourse = 0.45;  // [s], of fixes at 2 Hz with jitter
 constexpr double kLongestCourse = 4;      // [s]
@@ -96,7 +96,7 @@ void TurnMatcher::add(const GnssFix& fix) {
   const double length = way.head<2>().norm();
   const double sigma = geodesy::horizontal_sigma(fix.position_covariance);
   const double dt = seconds_between(anchor_->t_ns, fix.t_ns);
-  if (length < std::max(kShortestWay, kSigmas * sigma) || dt < kShortestCourse) return;
+  if (length < std::max(kShortestWay, kWaySigmas * sigma) || dt < kShortestCourse) return;
   const Course course{anchor_->t_ns + (fix.t_ns - anchor_->t_ns) / 2, geodesy::azimuth(way),
                       length / dt};
   anchor_ = fix;

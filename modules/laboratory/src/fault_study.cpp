@@ -154,8 +154,9 @@ void FaultObserver::notice(const state::Notice& notice) {
 
 void FaultObserver::judge() {
   metrics = metrics_->metrics();
-  if (metrics.trust.trustworthy) return;
-  notices.insert(notices.end(), metrics.trust.reasons.begin(), metrics.trust.reasons.end());
+  const std::vector<std::string>& reasons = metrics.trust.reasons;
+  if (!metrics.trust.trustworthy) notices.insert(notices.end(), reasons.begin(), reasons.end());
+  notices.insert(notices.end(), warnings_.begin(), warnings_.end());
 }
 
 std::vector<FaultOutcome> run_fault(const FaultCase& fault, const std::vector<std::string>& methods,

@@ -80,8 +80,7 @@ void NavigationRun::finish() {
   for (const std::string& line : intake_->summary(driving_->late_fixes())) {
     sink_.notice({driving_->time_ns(), NoticeKind::skipped, line});
   }
-  if (!sink_.wants_warnings()) return;
-  for (const state::Notice& warning : intake_->warnings()) sink_.notice(warning);
+  for (const state::Notice& warning : intake_->warnings()) sink_.warning(warning);
 }
 
 /// Nothing follows: whether something was still held back.

@@ -100,6 +100,7 @@ void Smoother::Keeper::give_out() {
                  [&](const state::ObservationResult& o) { sink_.observation(o); },
                  [&](const state::Notice& n) { sink_.notice(n); }};
   for (const auto& kept : kept_) std::visit(give, kept);
+  for (const state::Notice& warning : warnings_) sink_.warning(warning);
 }
 
 Smoother::Smoother(std::unique_ptr<measurement::Navigator> navigator,

@@ -47,7 +47,7 @@ class FaultObserver : public state::Sink {
   void epoch(const state::Epoch& epoch) override;
   void fix(const state::FixResult& fix) override { metrics_->fix(fix); }
   void notice(const state::Notice& notice) override;
-  bool wants_warnings() const override { return true; }
+  void warning(const state::Notice& notice) override { warnings_.push_back(notice.text); }
   /// At the end; what condemns the run is said like a notice.
   void judge();
 
@@ -62,6 +62,7 @@ class FaultObserver : public state::Sink {
  private:
   std::optional<evaluation::RunMetricsCollector> metrics_;
   std::optional<evaluation::ReferenceComparison> comparison_;
+  std::vector<std::string> warnings_;
 };
 
 /// What the study does not know: rawlogs and estimators.

@@ -46,7 +46,7 @@ class Smoother : public state::Estimator {
     }
     void notice(const state::Notice& notice) override;
     bool wants_predictions() const override { return sink_.wants_predictions(); }
-    bool wants_warnings() const override { return sink_.wants_warnings(); }
+    void warning(const state::Notice& notice) override { warnings_.push_back(notice); }
     /// Those of the forward run; they do not wait.
     void prediction(const state::PredictionResult& result) override { sink_.prediction(result); }
     /// Smooths, once the forward run is over.
@@ -71,6 +71,7 @@ class Smoother : public state::Estimator {
     std::deque<std::variant<NodeEpoch, BetweenEpoch, NodeFix, state::FixResult,
                             state::ObservationResult, state::Notice>>
         kept_;
+    std::vector<state::Notice> warnings_;
   };
 
   Keeper keeper_;

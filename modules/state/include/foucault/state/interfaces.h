@@ -38,8 +38,8 @@ class Sink {
   /// Predictions cost time and come only if they are wanted, from the beginning on.
   virtual bool wants_predictions() const { return false; }
   virtual void prediction(const PredictionResult&) {}
-  /// Whether, at the end, what seems wrong with the recording comes as notices.
-  virtual bool wants_warnings() const { return false; }
+  /// What seems wrong with the recording; at the end, after everything else.
+  virtual void warning(const Notice&) {}
 };
 
 /// Turns measurements into epochs, which go to the sink it was built with.
