@@ -55,8 +55,8 @@ void study_faults(const FaultStudyOptions& options, Call& call) {
         const FaultTask& task = tasks[i];
         const std::filesystem::path log =
             directory.staging() / fmt::format("{}-{}.rawlog", task.fault, task.seed);
-        results[i] = run_fault(laboratory::find_fault_case(task.fault), options.methods,
-                                           Settings(), task.seed, log.string());
+        results[i] = run_fault(laboratory::find_fault_case(task.fault), options.methods, Settings(),
+                               task.seed, log.string());
       },
       call.console.progress_of("faults"));
   std::vector<laboratory::FaultOutcome> outcomes;
