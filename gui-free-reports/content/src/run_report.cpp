@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <ctime>
-
 #include "consistency_section.h"
 #include "foucault/core/fix_quality.h"
 #include "foucault/core/time.h"

@@ -22,8 +22,11 @@ Verdict verdict_of(const std::vector<Measurement>& measurements) {
   try {
     for (const Measurement& m : measurements) {
       verdict.after_s = seconds_between(LevelDrive::kStart, stamp(m));
-      if (const auto* fix = std::get_if<GnssFix>(&m)) plausibility.add(*fix);
-      if (const auto* increment = std::get_if<ImuIncrement>(&m)) plausibility.add(*increment);
+      if (const auto* fix = std::get_if<GnssFix>(&m)) plausibility.watch(*fix);
+      if (const auto* increment = std::get_if<ImuIncrement>(&m)) {
+        plausibility.watch(*increment);
+        plausibility.throw_if_useless();
+      }
     }
   } catch (const DataError& error) {
     verdict.error = error.what();

@@ -23,12 +23,6 @@ class Plausibility {
   /// After an increment: throws DataError that names it and the remedy, as soon as it is certain.
   void throw_if_useless();
 
-  void add(const ImuIncrement& increment) {
-    watch(increment);
-    throw_if_useless();
-  }
-  void add(const GnssFix& fix) { watch(fix); }
-
   ForceFacts force() const;
   std::optional<TurnMatch> turns() const { return turn_matcher_.best(); }
 
