@@ -7,7 +7,7 @@ namespace foucault::app {
 std::function<void(Call&)> declare_lab(CLI::App& app) {
   app.require_subcommand(1);
   const std::vector<Study> studies{declare_fault_study(app), declare_return_study(app),
-                                   declare_preintegration_study(app)};
+                                   declare_start_study(app), declare_preintegration_study(app)};
   app.footer(
       "\nExamples:\n"
       "  foucault lab preintegration --out lab\n"

@@ -16,5 +16,6 @@ struct Study {
 Study declare_preintegration_study(CLI::App& lab);
 Study declare_fault_study(CLI::App& lab);
 Study declare_return_study(CLI::App& lab);
+Study declare_start_study(CLI::App& lab);
 
 }  // namespace foucault::app

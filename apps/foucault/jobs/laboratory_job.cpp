@@ -4,6 +4,7 @@
 #include <optional>
 #include <variant>
 
+#include "foucault/ekf/ekf.h"
 #include "foucault/rawlog/rawlog_source.h"
 #include "jobs/simulation_job.h"
 #include "methods.h"
@@ -76,6 +77,20 @@ laboratory::ReturnOutcome study_return(const laboratory::ReturnCase& what,
     return laboratory::ReturnMethod{make, method.keep_references_s};
   };
   return laboratory::study_return(what, program);
+}
+
+laboratory::StartOutcome study_start(int64_t seed, const Settings& settings) {
+  laboratory::StartProgram program;
+  program.filter = [&](const imu::ImuNoise& noise) {
+    return std::make_unique<ekf::EkfNavigator>(noise, state::Layout(), settings.ekf);
+  };
+  program.run = [&](const std::string& imu, const state::Mounting& mounting, state::Sink& sink) {
+    Settings configured = settings;
+    configured.imu.preset = imu;
+    configured.aids.gnss_velocity = "on";
+    return find_method("ekf").make(configured, mounting, sink);
+  };
+  return laboratory::study_start(seed, program);
 }
 
 }  // namespace foucault::app

@@ -5,6 +5,7 @@
 
 #include "foucault/laboratory/fault_study.h"
 #include "foucault/laboratory/return_study.h"
+#include "foucault/laboratory/start_study.h"
 #include "settings.h"
 
 /// The laboratory's studies with this program's recordings and methods.
@@ -19,5 +20,8 @@ std::vector<laboratory::FaultOutcome> run_fault(const laboratory::FaultCase& fau
 
 laboratory::ReturnOutcome study_return(const laboratory::ReturnCase& what,
                                        const Settings& settings);
+
+/// By the filter, with the velocities of the fixes: the drive that follows is not the matter.
+laboratory::StartOutcome study_start(int64_t seed, const Settings& settings);
 
 }  // namespace foucault::app

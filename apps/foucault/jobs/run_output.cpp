@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <variant>
 
 #include "foucault/core/profile.h"
@@ -82,6 +83,14 @@ void RunOutput::observation(const state::ObservationResult& result) {
 
 void RunOutput::prediction(const state::PredictionResult& prediction) {
   if (metrics_) metrics_->prediction(prediction);
+}
+
+void RunOutput::catching_up(std::size_t left) {
+  most_left_ = left == 0 ? 0 : std::max(most_left_, left);
+  if (left > 0) {
+    console_.progress("catching up",
+                      1 - static_cast<double>(left) / static_cast<double>(most_left_));
+  }
 }
 
 void RunOutput::notice(const state::Notice& notice) {

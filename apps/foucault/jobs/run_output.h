@@ -30,6 +30,7 @@ class RunOutput : public state::Sink {
   void observation(const state::ObservationResult& result) override;
   void notice(const state::Notice& notice) override;
   bool wants_predictions() const override { return true; }
+  void catching_up(std::size_t left) override;
   void warning(const state::Notice& n) override { notice(n); }
   void prediction(const state::PredictionResult& prediction) override;
   /// Why the log broke off, for the report; the command says it at its end.
@@ -53,6 +54,7 @@ class RunOutput : public state::Sink {
   state::Epoch last_epoch_;
   content::RunReport* report_;
   Console& console_;
+  std::size_t most_left_ = 0;  ///< to catch up with
 };
 
 }  // namespace foucault::app

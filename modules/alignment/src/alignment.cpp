@@ -7,16 +7,20 @@
 #include <utility>
 #include <vector>
 
-#include "carried_attitude.h"
-#include "course_finder.h"
 #include "foucault/core/constants.h"
 #include "foucault/core/error.h"
 #include "foucault/core/time.h"
+#include "foucault/geodesy/course.h"
 #include "foucault/geodesy/local_frame.h"
+#include "foucault/geodesy/wgs84.h"
 #include "foucault/state/vehicle_attitude.h"
+#include "heading_bank.h"
 #include "initial_state.h"
-#include "moving_alignment.h"
+#include "motion_fit.h"
+#include "refinement.h"
 #include "rest_detector.h"
+#include "starts.h"
+#include "track.h"
 
 namespace foucault::alignment {
 
@@ -26,13 +30,22 @@ using Eigen::Matrix3d;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
-constexpr double kLargestHole = 0.1;      // [s]: over a longer one the attitude is lost
-constexpr double kRestSpeedSigma = 0.01;  // [m/s]
-/// With the heading given, a rest is complete at this length [s].
-constexpr double kEnoughRest = 10;
-/// Measurements used in the alignment are used again in the run: their variances are doubled.
-constexpr double kReuse = 2;
-constexpr double kStaleAttitude = 60;  // [s] after rest: a new rest is preferred
+constexpr double kLargestHole = 0.5;  // [s]: over a longer one the attitude is lost
+constexpr double kEnoughRest = 10;    // [s]: with the heading given, a rest is complete
+constexpr double kStretch = 3.9;      // [s], of the first level: four of a second and their jitter
+constexpr double kLongestVelocity = 10;  // [s], over which that of the start is found
+constexpr int kHypotheses = 12;          // of the heading: linear over the 15 deg to either side
+/// What was found is used again in the run: with three times its sigma it counts for a ninth.
+constexpr double kReuse = 9;
+/// The longer the vehicle has moved, the less is asked of the heading; in the end to 10 deg, which
+/// a filter still takes for linear.
+struct Patience {
+  double seconds, sigma;
+};
+constexpr Patience kPatience[] = {{120, 10 * kDegree}, {60, 3 * kDegree}, {0, 1 * kDegree}};
+constexpr double kLargestSigma = kPatience[0].sigma;
+constexpr double kApart = 5;  // sigmas between headings that are not the same
+constexpr double kRetry = 5;  // [s] after an attempt that failed
 
 std::optional<GivenAngle> given(const std::optional<double>& degrees, double sigma_degrees) {
   if (!degrees) return std::nullopt;
@@ -54,11 +67,6 @@ void require_all(const GivenAngles& angles) {
   std::string list;
   for (const std::string& key : missing) list += (list.empty() ? "" : ", ") + key;
   throw UsageError("alignment.mode=given needs alignment." + list);
-}
-
-CourseLimits course_limits(const AlignmentOptions& options) {
-  return {options.min_speed_m_s, options.max_course_sigma_deg * kDegree,
-          options.max_turn_rate_deg_s * kDegree, options.mounting_sigma_deg * kDegree};
 }
 
 std::string wrong_axes(const std::string& up) {
@@ -90,12 +98,9 @@ void AlignmentOptions::fields(ConfigFields& f) {
   f.number("roll_sigma_deg", roll_sigma_deg, kPositive, "sigma of a given roll");
   f.number("pitch_sigma_deg", pitch_sigma_deg, kPositive, "sigma of a given pitch");
   f.number("heading_sigma_deg", heading_sigma_deg, kPositive, "sigma of a given heading");
-  f.number("min_speed_m_s", min_speed_m_s, kPositive, "slower, the course is no heading");
-  f.number("max_course_sigma_deg", max_course_sigma_deg, kPositive, "of one course");
-  f.number("max_turn_rate_deg_s", max_turn_rate_deg_s, kPositive,
-           "faster, the vehicle does not drive straight");
-  f.number("mounting_sigma_deg", mounting_sigma_deg, kPositive,
-           "course against the forward axis: mounting and crab angle");
+  for (const char* gone :
+       {"min_speed_m_s", "max_course_sigma_deg", "max_turn_rate_deg_s", "mounting_sigma_deg"})
+    f.replaced(gone, "nothing any more: the accelerations tell the heading, whatever the course");
   f.number("min_rest_s", min_rest_s, kPositive, "shorter rests are not used");
   f.number("max_rest_s", max_rest_s, {10, 3600}, "how far back the start may lie");
 }
@@ -107,19 +112,18 @@ class Aligner::Impl {
       : options_(options),
         noise_(noise),
         layout_(layout),
-        q_v_b_(mounting.q_v_b.normalized()),
+        mounting_{mounting.q_v_b.normalized()},
         given_(given_angles(options)),
         rest_(options.min_rest_s, options.max_rest_s),
-        later_rest_(rest_),
-        carried_(q_v_b_.conjugate() * Vector3d::UnitX()),
-        courses_(course_limits(options)),
-        moving_(course_limits(options), given_.heading, q_v_b_, noise) {
+        track_(options.max_rest_s),
+        bank_(noise, layout, mounting_) {
     if (options_.mode == "given") require_all(given_);
   }
 
   void add(const GnssFix& fix);
   void add(const ImuIncrement& increment);
-  void restart() { *this = Impl(options_, noise_, state::Mounting{q_v_b_}, layout_); }
+  void finish();
+  void restart() { *this = Impl(options_, noise_, mounting_, layout_); }
   int64_t earliest_start_ns() const;
   std::string why_not() const;
 
@@ -129,31 +133,44 @@ class Aligner::Impl {
  private:
   bool all_given() const { return options_.mode == "given"; }
   void begin_given(const GnssFix& fix);
-  void add_to_rest(const ImuIncrement& increment);
   void note_hole(const ImuIncrement& increment);
-  void finish_rest_with_given_heading();
-  void start_at_rest(const HeadingOffset& heading, double drift_variance);
-  void accept_moving(const state::Epoch& epoch);
+  void take(const Step& step);
+
+  void try_to_begin();
+  bool rest_teaches_more() const;
+  void forget_drive();
+  bool rest_is_proven() const;
+  std::vector<GnssFix> fixes_at_rest() const;
+  void begin(AlignmentFindings findings, bool at_rest);
+
+  void throw_if_turned_over() const;
+  void decide();
+  void conclude(double largest_sigma);
+  void start_along_course();
+  void note_course();
+  std::optional<state::Epoch> start_from(const state::Epoch& found, double level) const;
+  std::vector<Refined> refined_candidates(double level) const;
   void accept(const state::Epoch& epoch, const std::string& how);
-  std::optional<std::string> wrong_up(const state::Epoch& epoch) const;
+  std::optional<std::string> wrong_up(const Vector3d& up_b) const;
+  double heading_of(const state::Epoch& epoch) const;
+  double heading_sigma(const Refined& refined) const;
 
   AlignmentOptions options_;
   imu::ImuNoise noise_;
   state::Layout layout_;
-  Quaterniond q_v_b_;
+  state::Mounting mounting_;
   GivenAngles given_;
 
   RestDetector rest_;
-  RestDetector later_rest_;  ///< one that may take the place of rest_ once that has ended
-  CarriedAttitude carried_;
-  CourseFinder courses_;
-  MovingAlignment moving_;
-  /// Attitudes in a row, found while moving, of which this axis is up.
-  struct Tilted {
-    std::string up;
-    int64_t since_ns = 0;
-  };
-  std::optional<Tilted> tilted_;
+  std::optional<FoundRest> rest_found_;  ///< the drive began with it
+  Track track_;
+  HeadingBank bank_;
+  int64_t begin_ns_ = 0;     ///< of the bank
+  int64_t next_try_ns_ = 0;  ///< after one that failed
+  std::optional<HeadingBelief> belief_;
+  std::optional<state::Epoch> along_course_;  ///< the latest of which the course is known
+  std::string failure_;
+
   std::optional<GnssFix> first_given_;  ///< mode given: the fix to start from
   Vector3d rate_sum_ = Vector3d::Zero();
   double rate_time_ = 0;
@@ -167,21 +184,9 @@ void Aligner::Impl::add(const GnssFix& fix) {
   last_fix_ns_ = fix.t_ns;
   latitude_ = fix.antenna.latitude;
   if (initial_) return;
-  if (all_given()) {
-    begin_given(fix);
-    return;
-  }
+  if (all_given()) return begin_given(fix);
   rest_.add(fix);
-  if (rest_.ended()) later_rest_.add(fix);
-  finish_rest_with_given_heading();
-  if (initial_) return;
-  if (rest_.established()) {
-    if (carried_.reverses()) courses_.interrupt();
-    const std::optional<HeadingOffset> heading = courses_.add(fix, carried_.attitude());
-    if (heading) start_at_rest(*heading, carried_.drift_variance());
-  } else if (const std::optional<AlignmentFindings> findings = moving_.add(fix)) {
-    accept_moving(with_given_angles(initial_state(*findings, noise_, layout_), q_v_b_, given_));
-  }
+  track_.add(fix);
 }
 
 void Aligner::Impl::add(const ImuIncrement& increment) {
@@ -195,127 +200,304 @@ void Aligner::Impl::add(const ImuIncrement& increment) {
     if (first_given_ && first_given_->t_ns < *first_increment_ns_) first_given_.reset();
     return;
   }
-  moving_.add(increment);
-  carried_.add(increment);
-  add_to_rest(increment);
-  finish_rest_with_given_heading();
+  rest_.add(increment);
+  for (const Step& step : track_.add(increment)) {
+    if (!initial_) take(step);
+  }
 }
 
-void Aligner::Impl::add_to_rest(const ImuIncrement& increment) {
-  bool still = rest_.add(increment);
-  if (rest_.ended()) {
-    later_rest_.add(increment);
-    // A rest that goes on after all (GNSS had wandered), or the next one after a long way.
-    if (carried_.since_rest() > kStaleAttitude && later_rest_.established()) {
-      rest_ = std::exchange(later_rest_, RestDetector(options_.min_rest_s, options_.max_rest_s));
-      still = true;
-    }
+void Aligner::Impl::take(const Step& step) {
+  const auto* fix = std::get_if<GnssFix>(&step);
+  if (!bank_.started()) {
+    if (fix) try_to_begin();
+    return;
   }
-  if (!still) return;
-  carried_.rest(rest_.recent_means(), latitude_, noise_);
-  courses_.interrupt();
+  if (fix && rest_teaches_more()) return forget_drive();
+  if (const auto* increment = std::get_if<ImuIncrement>(&step)) return bank_.propagate(*increment);
+  bank_.update(*fix);
+  decide();
 }
 
 void Aligner::Impl::note_hole(const ImuIncrement& increment) {
   if (!last_increment_ns_) return;
   if (seconds_between(*last_increment_ns_, increment.t_begin_ns) <= kLargestHole) return;
-  rest_ = later_rest_ = RestDetector(options_.min_rest_s, options_.max_rest_s);
-  courses_.interrupt();
-  moving_.restart();
+  if (bank_.started() && belief_ && belief_->sigma <= kLargestSigma) conclude(kLargestSigma);
+  if (initial_) return;
+  rest_ = RestDetector(options_.min_rest_s, options_.max_rest_s);
+  track_ = Track(options_.max_rest_s);
+  forget_drive();
   first_given_.reset();
 }
 
-/// Mode given: the first fix, with its velocity or the one that the next fix gives.
-void Aligner::Impl::begin_given(const GnssFix& fix) {
-  const bool covered = last_increment_ns_ && first_given_;
-  const GnssFix start = covered ? *first_given_ : fix;
-  const Vector3d omega_b =
-      rate_time_ > 0 ? Vector3d(rate_sum_ / rate_time_) : Vector3d(Vector3d::Zero());
-  if (start.velocity_n && last_increment_ns_) {
-    accept(given_state(start, *start.velocity_n, start.velocity_covariance, omega_b, q_v_b_, given_,
-                       noise_),
-           "as given");
-    return;
+// The beginning -----------------------------------------------------------------------------------
+
+/// After a rest the level and the bias of the gyroscopes are known well; else the first fixes and
+/// the forces between them tell the level.
+void Aligner::Impl::try_to_begin() {
+  const bool rests = rest_.established();
+  if (rests && given_.heading && rest_.means().duration() > kEnoughRest && rest_is_proven()) {
+    rest_found_ = FoundRest{rest_.means(), *rest_.first_fix()};
+    return begin(
+        findings_at_rest(rest_found_->means, fixes_at_rest().back(), noise_, mounting_.q_v_b),
+        true);
   }
-  if (!covered) {
-    first_given_ = fix;
-    rate_sum_.setZero();
-    rate_time_ = 0;
-    return;
+  if (rests && rest_.ended() && getenv("ALDBG")) {
+    const MotionLine l = fit_line(fixes_at_rest());
+    fprintf(stderr, "rest ended %.1f s line %.3f sigma %.3f\n", rest_.means().duration(),
+            l.velocity_n.norm(), l.sigma);
   }
-  constexpr double kAcceleration = 1.5;  // [m/s^2] within the interval
-  const double dt = seconds_between(start.t_ns, fix.t_ns);
-  if (dt <= 0) return;
-  const Vector3d velocity_n = geodesy::LocalFrame(start.antenna).to_local(fix.antenna) / dt;
-  const double unknown = kAcceleration * dt / 2;
-  const Matrix3d covariance = (start.position_covariance + fix.position_covariance) / (dt * dt) +
-                              unknown * unknown * Matrix3d::Identity();
-  accept(given_state(start, velocity_n, covariance, omega_b, q_v_b_, given_, noise_), "as given");
+  if (rests && !rest_.ended()) return;
+  if (rests && rest_is_proven()) {
+    rest_found_ = FoundRest{rest_.means(), *rest_.first_fix()};
+    return begin(
+        findings_at_rest(rest_.recent_means(), fixes_at_rest().back(), noise_, mounting_.q_v_b),
+        true);
+  }
+  const std::vector<GnssFix> fixes = track_.first_fixes(kStretch);
+  if (fixes.size() < 3 || seconds_between(fixes.front().t_ns, fixes.back().t_ns) < kStretch) return;
+  begin(findings_in_motion(fixes, track_.steps(), noise_, mounting_.q_v_b), false);
 }
 
-/// A rest with the heading given needs no course.
-void Aligner::Impl::finish_rest_with_given_heading() {
-  if (initial_ || !given_.heading || !rest_.established()) return;
+/// Of a heading about which the drive has told nothing yet.
+bool Aligner::Impl::rest_teaches_more() const {
+  constexpr double kNothing = 20 * kDegree;
+  return rest_.established() && !given_.heading && (!belief_ || belief_->sigma > kNothing) &&
+         rest_is_proven();
+}
+
+void Aligner::Impl::forget_drive() {
+  bank_ = HeadingBank(noise_, layout_, mounting_);
+  rest_found_.reset();
+  belief_.reset();
+  along_course_.reset();
+}
+
+std::vector<GnssFix> Aligner::Impl::fixes_at_rest() const {
   const RestMeans means = rest_.means();
-  if (!rest_.ended() && means.duration() < kEnoughRest) return;
-  HeadingOffset heading;
-  heading.offset = given_.heading->value;
-  heading.variance = given_.heading->sigma * given_.heading->sigma / kReuse;
-  start_at_rest(heading, 0);
+  std::vector<GnssFix> fixes;
+  for (const Step& step : track_.steps()) {
+    const auto* fix = std::get_if<GnssFix>(&step);
+    if (fix && fix->t_ns >= means.begin_ns && fix->t_ns <= means.end_ns) fixes.push_back(*fix);
+  }
+  return fixes;
 }
 
-void Aligner::Impl::start_at_rest(const HeadingOffset& heading, double drift_variance) {
-  const std::optional<GnssFix> fix = rest_.first_fix();
-  if (!fix) return;
-  const RestMeans means = rest_.means();
-  AlignmentFindings findings;
-  findings.fix = *fix;
-  findings.q_v_b = q_v_b_;
-  findings.motion_covariance.topLeftCorner<3, 3>() =
-      kRestSpeedSigma * kRestSpeedSigma * Matrix3d::Identity();
-  const double T = means.duration();
-  const double accel_white = noise_.accel_noise_density * noise_.accel_noise_density / T;
-  const double gyro_white = noise_.gyro_noise_density * noise_.gyro_noise_density / T;
-  findings.specific_force_b = means.accel_b;
-  findings.specific_force_covariance =
-      (kReuse * means.accel_variance.cwiseMax(accel_white)).asDiagonal();
-  findings.gyro_b = means.gyro_b;
-  findings.gyro_covariance = (kReuse * means.gyro_variance.cwiseMax(gyro_white)).asDiagonal();
-  findings.heading = heading.offset;
-  findings.heading_variance = kReuse * heading.variance + drift_variance;
-  const state::Epoch epoch =
-      with_given_angles(initial_state(findings, noise_, layout_), q_v_b_, given_);
-  const std::string source =
-      given_.heading ? std::string("heading given")
-                     : fmt::format("heading from {} courses up to {:.1f} s later", heading.courses,
-                                   seconds_between(epoch.t_ns, heading.end_ns));
-  accept(epoch, fmt::format("from {:.0f} s of rest, {}", T, source));
+/// Steady sensors are those of a train on its way as well: the fixes must not move.
+bool Aligner::Impl::rest_is_proven() const {
+  constexpr double kStanding = 0.1;  // [m/s], three sigmas: nothing steers so slowly
+  const std::vector<GnssFix> fixes = fixes_at_rest();
+  if (fixes.size() < 2 || !rest_.first_fix()) return false;
+  const MotionLine line = fit_line(fixes);
+  return line.sigma < kStanding && line.velocity_n.head<2>().norm() < 3 * line.sigma + kStanding;
 }
 
-/// On its side in a roll or a loop a vehicle is no place to start from, and no proof of wrong axes:
-/// those are as wrong in every stretch.
-void Aligner::Impl::accept_moving(const state::Epoch& epoch) {
+/// At rest up is where the accelerometers feel it. All headings are as likely, but for what the
+/// gyroscopes at rest feel of the Earth's rotation.
+void Aligner::Impl::begin(AlignmentFindings findings, bool at_rest) {
+  const std::optional<std::string> up = wrong_up(findings.specific_force_b);
+  if (at_rest && up) throw DataError(wrong_axes(*up));
+  const int count = given_.heading ? 1 : kHypotheses;
+  const double gap = 2 * kPi / count;
+  const double prior_variance = noise_.gyro_turn_on_sigma * noise_.gyro_turn_on_sigma +
+                                noise_.gyro_bias_sigma * noise_.gyro_bias_sigma;
+  findings.heading_variance = gap * gap / 4;
+  std::vector<state::Epoch> starts;
+  std::vector<double> log_prior;
+  for (int i = 0; i < count; ++i) {
+    findings.heading = so3::wrap(i * gap);
+    if (given_.heading) {
+      findings.heading = given_.heading->value;
+      findings.heading_variance = given_.heading->sigma * given_.heading->sigma;
+    }
+    const Vector3d rate_b = attitude_of(findings).conjugate() *
+                            geodesy::wgs84::earth_rate_n(findings.fix.antenna.latitude);
+    const Vector3d variance = findings.gyro_covariance.diagonal().array() + prior_variance;
+    log_prior.push_back(-0.5 *
+                        (findings.gyro_b - rate_b).cwiseAbs2().cwiseQuotient(variance).sum());
+    starts.push_back(with_given_angles(initial_state(findings, noise_, layout_), mounting_.q_v_b,
+                                       {given_.roll, given_.pitch, {}}));
+  }
+  const double most = *std::max_element(log_prior.begin(), log_prior.end());
+  constexpr double kContradiction = -12.5;  // the prior is wrong then, see fuse_gyro_prior()
+  for (int i = 0; i < count; ++i) {
+    bank_.add(starts[i], at_rest && most > kContradiction ? log_prior[i] - most : 0);
+  }
+  rest_ = RestDetector(options_.min_rest_s, options_.max_rest_s);
+  begin_ns_ = findings.fix.t_ns;
+  for (const Step& step : track_.steps()) {
+    if (const auto* increment = std::get_if<ImuIncrement>(&step)) {
+      if (increment->t_begin_ns >= begin_ns_) bank_.propagate(*increment);
+    } else if (const GnssFix& fix = std::get<GnssFix>(step); fix.t_ns > begin_ns_) {
+      bank_.update(fix);
+    }
+  }
+  decide();
+}
+
+// The decision ------------------------------------------------------------------------------------
+
+double Aligner::Impl::heading_of(const state::Epoch& epoch) const {
+  return state::vehicle_attitude(epoch, mounting_).euler.heading;
+}
+
+double Aligner::Impl::heading_sigma(const Refined& refined) const {
+  return std::sqrt(refined.level) * state::vehicle_attitude(refined.end, mounting_).sigma.z();
+}
+
+/// Where the accelerometers feel up on average, if the vehicle has moved for long enough to be done
+/// with any manoeuvre.
+void Aligner::Impl::throw_if_turned_over() const {
   constexpr double kLongestManoeuvre = 30;  // [s]
-  const std::optional<std::string> up = wrong_up(epoch);
-  if (!up) return accept(epoch, "while moving");
-  if (!tilted_ || tilted_->up != *up) tilted_ = Tilted{*up, epoch.t_ns};
-  if (seconds_between(tilted_->since_ns, epoch.t_ns) > kLongestManoeuvre) {
+  if (seconds_between(track_.begin_ns(), *last_increment_ns_) < kLongestManoeuvre) return;
+  if (const std::optional<std::string> up = wrong_up(track_.mean_force_b()))
     throw DataError(wrong_axes(*up));
+}
+
+void Aligner::Impl::decide() {
+  belief_ = bank_.belief();
+  note_course();
+  if (getenv("ALDBG")) {
+    fprintf(stderr, "t %.1f age %.1f n %zu heading %.1f sigma %.2f level %.1f\n",
+            belief_->best.t_ns * 1e-9 - 1.3857624e9, seconds_between(begin_ns_, belief_->best.t_ns),
+            bank_.candidates().size(), belief_->heading / kDegree, belief_->sigma / kDegree,
+            belief_->level);
   }
+  const int64_t now_ns = belief_->best.t_ns;
+  const double age = seconds_between(begin_ns_, now_ns);
+  if (now_ns < next_try_ns_) return;
+  throw_if_turned_over();
+  for (const Patience& patience : kPatience) {
+    if (age < patience.seconds) continue;
+    if (given_.heading || belief_->sigma <= patience.sigma) conclude(patience.sigma);
+    break;
+  }
+  if (!initial_ && age > 0.95 * options_.max_rest_s) start_along_course();
+  next_try_ns_ = now_ns + nanoseconds(kRetry);
+}
+
+void Aligner::Impl::finish() {
+  if (initial_ || !bank_.started()) return;
+  belief_ = bank_.belief();
+  if (given_.heading || belief_->sigma <= kLargestSigma) conclude(kLargestSigma);
+  if (!initial_) start_along_course();
+}
+
+/// The start for an attitude that was found later: at the rest that the drive began with, else at
+/// the first fix that is kept.
+std::optional<state::Epoch> Aligner::Impl::start_from(const state::Epoch& found,
+                                                      double level) const {
+  state::Epoch epoch;
+  if (rest_found_ && rest_found_->first.t_ns >= track_.begin_ns()) {  // heading as at its end
+    const CarriedBack back = carried_back(found, track_.steps(), begin_ns_, noise_);
+    state::Epoch turned;
+    turned.q_n_b = back.q_n_b;
+    turned.covariance.block<9, 9>(6, 6) = back.covariance;
+    const state::VehicleAttitude attitude = state::vehicle_attitude(turned, mounting_);
+    AlignmentFindings findings =
+        findings_at_rest(rest_found_->means, rest_found_->first, noise_, mounting_.q_v_b);
+    findings.heading = attitude.euler.heading;
+    findings.heading_variance = kReuse * level * attitude.sigma.z() * attitude.sigma.z();
+    epoch = initial_state(findings, noise_, layout_);
+  } else {
+    const std::vector<GnssFix> fixes = track_.first_fixes(kStretch);
+    if (fixes.size() < 3) return std::nullopt;
+    CarriedBack back = carried_back(found, track_.steps(), fixes.front().t_ns, noise_);
+    back.reuse(kReuse * level, noise_);
+    epoch = state_in_motion(track_.first_fixes(kLongestVelocity), track_.steps(), back);
+  }
+  return with_given_angles(epoch, mounting_.q_v_b, given_);
+}
+
+std::vector<Refined> Aligner::Impl::refined_candidates(double level) const {
+  constexpr std::size_t kMost = 4;
+  const auto make_start = [this](const state::Epoch& found, double at) {
+    return start_from(found, at);
+  };
+  std::vector<Refined> all;
+  for (const state::Epoch& candidate : bank_.candidates()) {
+    if (all.size() == kMost) break;
+    const bool known = std::any_of(all.begin(), all.end(), [&](const Refined& refined) {
+      return std::abs(so3::wrap(heading_of(candidate) - heading_of(refined.end))) <
+             kApart * heading_sigma(refined);
+    });
+    if (known) continue;
+    const std::optional<Refined> refined =
+        refine(candidate, level, track_.steps(), noise_, layout_, make_start);
+    if (refined) all.push_back(*refined);
+  }
+  if (getenv("ALDBG"))
+    for (auto& r : all)
+      fprintf(stderr, "  refined %.2f -> %.2f sigma %.2f level %.1f misfit %.1f\n",
+              heading_of(r.start) / kDegree, heading_of(r.end) / kDegree,
+              state::vehicle_attitude(r.end, mounting_).sigma.z() / kDegree, r.level,
+              r.agreement.misfit(level));
+  std::sort(all.begin(), all.end(), [&](const Refined& a, const Refined& b) {
+    return a.agreement.misfit(level) < b.agreement.misfit(level);
+  });
+  return all;
+}
+
+/// Once refined, one heading must be known well enough, and be the only one.
+void Aligner::Impl::conclude(double largest_sigma) {
+  constexpr double kOdds = 14;  // twice the log of one in a thousand
+  const std::vector<Refined> all = refined_candidates(belief_->level);
+  if (all.empty()) {
+    failure_ = "no state was found from which a filter keeps to the fixes";
+    return;
+  }
+  const Refined& best = all.front();
+  const double sigma = heading_sigma(best);
+  failure_ = fmt::format("the fixes tell the heading to {:.0f} deg only", sigma / kDegree);
+  if (!given_.heading && sigma > largest_sigma) return;
+  for (const Refined& other : all) {
+    const double apart = std::abs(so3::wrap(heading_of(other.end) - heading_of(best.end)));
+    const double odds = other.agreement.misfit(best.level) - best.agreement.misfit(best.level);
+    failure_ =
+        fmt::format("headings that are {:.0f} deg apart agree with the fixes", apart / kDegree);
+    if (apart > kApart * sigma && odds < kOdds) return;
+  }
+  const double seconds = seconds_between(best.start.t_ns, best.end.t_ns);
+  accept(
+      best.start,
+      fmt::format("{}from {:.0f} s of motion{}", rest_found_ ? "from rest and " : "", seconds,
+                  given_.heading ? ", heading given"
+                                 : fmt::format(", after which its heading was known to {:.1f} deg",
+                                               sigma / kDegree)));
+}
+void Aligner::Impl::note_course() {
+  constexpr double kClear = 5 * kDegree;
+  const state::Epoch& epoch = belief_->best;
+  const Matrix3d covariance = epoch.covariance_of(state::block::velocity);
+  if (geodesy::course_sigma(covariance, epoch.velocity_n) < kClear) along_course_ = epoch;
+}
+
+/// Straight and steady motion tells nothing of the heading. Most vehicles go along their nose, some
+/// with leeway: the course is taken if the fixes do not speak against it.
+void Aligner::Impl::start_along_course() {
+  if (!along_course_) return;
+  const double course = geodesy::azimuth(along_course_->velocity_n);
+  const double off = so3::wrap(course - belief_->heading);
+  if (std::abs(off) > 2 * std::max(belief_->sigma, kLargestSigma)) return;
+  GivenAngles along;
+  along.heading = GivenAngle{course, kLargestSigma / std::sqrt(kReuse)};
+  const state::Epoch found = with_given_angles(*along_course_, mounting_.q_v_b, along);
+  const std::optional<state::Epoch> start = start_from(found, 1);
+  if (!start) return;
+  accept(*start,
+         "along the course, for nothing but straight and steady motion was there to tell "
+         "the heading");
 }
 
 void Aligner::Impl::accept(const state::Epoch& epoch, const std::string& how) {
-  if (const std::optional<std::string> up = wrong_up(epoch)) throw DataError(wrong_axes(*up));
   initial_ = epoch;
-  summary_ = fmt::format("aligned {}: {}", how, describe(epoch, q_v_b_));
+  summary_ = fmt::format("aligned {}: {}", how, describe(epoch, mounting_.q_v_b));
 }
 
-/// A course is a heading only while the forward axis is about level; axes named wrongly are seen in
-/// that: which axis of the vehicle is up instead.
-std::optional<std::string> Aligner::Impl::wrong_up(const state::Epoch& epoch) const {
+/// Axes named wrongly are seen in the mean over the drive: which axis of the vehicle is up instead.
+std::optional<std::string> Aligner::Impl::wrong_up(const Vector3d& up_b) const {
   constexpr double kSteepest = 60 * kDegree;
-  if (all_given() || given_.roll || given_.pitch) return std::nullopt;
-  const Vector3d up_v = (epoch.q_n_b * q_v_b_.conjugate()).conjugate() * -Vector3d::UnitZ();
+  if (given_.roll || given_.pitch || !(up_b.norm() > kStandardGravity / 2)) return std::nullopt;
+  const Vector3d up_v = mounting_.q_v_b * up_b.normalized();
   if (-up_v.z() > std::cos(kSteepest)) return std::nullopt;
   Eigen::Index axis = 0;
   up_v.cwiseAbs().maxCoeff(&axis);
@@ -330,7 +512,7 @@ int64_t Aligner::Impl::earliest_start_ns() const {
   if (!last_increment_ns_) {
     return last_fix_ns_ ? *last_fix_ns_ - kNanosecondsPerSecond : INT64_MIN;
   }
-  return all_given() ? *last_increment_ns_ : std::min(rest_.begin_ns(), *last_increment_ns_);
+  return all_given() ? *last_increment_ns_ : std::min(track_.begin_ns(), *last_increment_ns_);
 }
 
 std::string Aligner::Impl::why_not() const {
@@ -348,23 +530,58 @@ std::string Aligner::Impl::why_not() const {
                       utc_text(*first_increment_ns_), utc_text(*last_increment_ns_));
   }
   if (all_given()) return head + "there are fewer than two fixes within the IMU data";
-  if (tilted_) return head + wrong_axes(tilted_->up);
-  const double fastest = std::max(courses_.fastest(), moving_.fastest());
-  std::string why =
-      rest_.established()
-          ? fmt::format("the vehicle rested, but ")
-          : fmt::format("the vehicle never rested for {:.1f} s (longest {:.1f} s), and ",
-                        options_.min_rest_s, rest_.longest_s());
-  if (fastest < options_.min_speed_m_s) {
-    why += fmt::format("never drove faster than alignment.min_speed_m_s={:g} (fastest {:.1f} m/s)",
-                       options_.min_speed_m_s, fastest);
-  } else {
-    why += fmt::format(
-        "never drove straight for long enough on fixes good enough for its heading "
-        "(alignment.max_turn_rate_deg_s={:g}, max_course_sigma_deg={:g}; fastest {:.1f} m/s)",
-        options_.max_turn_rate_deg_s, options_.max_course_sigma_deg, fastest);
+  if (const std::optional<std::string> up = wrong_up(track_.mean_force_b()))
+    return head + wrong_axes(*up);
+  if (belief_) {
+    const bool tried = belief_->sigma <= kLargestSigma && !failure_.empty();
+    const std::string why = tried ? failure_
+                                  : fmt::format("the fixes tell the heading to {:.0f} deg only",
+                                                belief_->sigma / kDegree);
+    return head +
+           fmt::format(
+               "{} after {:.0f} s, {:.0f} deg are needed: the vehicle turned or accelerated "
+               "too little for its GNSS",
+               why, seconds_between(begin_ns_, belief_->best.t_ns), kLargestSigma / kDegree) +
+           remedy;
   }
-  return head + why + remedy;
+  if (rest_.established()) {
+    return head + "the vehicle rested all the time, which does not tell the heading" + remedy;
+  }
+  return head +
+         fmt::format(
+             "three fixes over {:.0f} s of IMU data without a hole of {:g} s are needed, "
+             "and never were there",
+             kStretch, kLargestHole) +
+         remedy;
+}
+
+/// Mode given: the first fix, with its velocity or the one that the next fix gives.
+void Aligner::Impl::begin_given(const GnssFix& fix) {
+  const bool covered = last_increment_ns_ && first_given_;
+  const GnssFix start = covered ? *first_given_ : fix;
+  const Vector3d omega_b =
+      rate_time_ > 0 ? Vector3d(rate_sum_ / rate_time_) : Vector3d(Vector3d::Zero());
+  if (start.velocity_n && last_increment_ns_) {
+    accept(given_state(start, *start.velocity_n, start.velocity_covariance, omega_b,
+                       mounting_.q_v_b, given_, noise_),
+           "as given");
+    return;
+  }
+  if (!covered) {
+    first_given_ = fix;
+    rate_sum_.setZero();
+    rate_time_ = 0;
+    return;
+  }
+  constexpr double kAcceleration = 1.5;  // [m/s^2] within the interval
+  const double dt = seconds_between(start.t_ns, fix.t_ns);
+  if (dt <= 0) return;
+  const Vector3d velocity_n = geodesy::LocalFrame(start.antenna).to_local(fix.antenna) / dt;
+  const double unknown = kAcceleration * dt / 2;
+  const Matrix3d covariance = (start.position_covariance + fix.position_covariance) / (dt * dt) +
+                              unknown * unknown * Matrix3d::Identity();
+  accept(given_state(start, velocity_n, covariance, omega_b, mounting_.q_v_b, given_, noise_),
+         "as given");
 }
 
 Aligner::Aligner(const AlignmentOptions& options, const imu::ImuNoise& noise,
@@ -380,6 +597,7 @@ const std::optional<state::Epoch>& Aligner::initial() const { return impl_->init
 std::string Aligner::summary() const { return impl_->summary_; }
 int64_t Aligner::earliest_start_ns() const { return impl_->earliest_start_ns(); }
 std::string Aligner::why_not() const { return impl_->why_not(); }
+void Aligner::finish() { impl_->finish(); }
 void Aligner::restart() { impl_->restart(); }
 
 }  // namespace foucault::alignment

@@ -145,13 +145,6 @@ state::StateMatrix covariance_of(const AlignmentFindings& findings, const Quater
   return P;
 }
 
-void place_at_imu(state::Epoch& epoch, const GnssFix& fix, const Vector3d& antenna_velocity_n,
-                  const Vector3d& omega_b) {
-  epoch.t_ns = fix.t_ns;
-  epoch.position = geodesy::LocalFrame(fix.antenna).to_geodetic(-(epoch.q_n_b * fix.p_b_a));
-  epoch.velocity_n = antenna_velocity_n - epoch.q_n_b * omega_b.cross(fix.p_b_a);
-}
-
 }  // namespace
 
 /// From v_dot = f + g - 2 omega_ie x v.
@@ -173,6 +166,13 @@ Quaterniond attitude_of(const AlignmentFindings& findings) {
     q = Quaterniond(Eigen::AngleAxisd(axis.z() < 0 ? -missing : missing, axis)) * q;
   }
   return q.normalized();
+}
+
+void place_at_imu(state::Epoch& epoch, const GnssFix& fix, const Vector3d& antenna_velocity_n,
+                  const Vector3d& omega_b) {
+  epoch.t_ns = fix.t_ns;
+  epoch.position = geodesy::LocalFrame(fix.antenna).to_geodetic(-(epoch.q_n_b * fix.p_b_a));
+  epoch.velocity_n = antenna_velocity_n - epoch.q_n_b * omega_b.cross(fix.p_b_a);
 }
 
 state::Epoch initial_state(const AlignmentFindings& findings, const imu::ImuNoise& noise,

@@ -41,6 +41,11 @@ Eigen::Vector3d specific_force_n(const AlignmentFindings& findings);
 /// The attitude of `findings`: R f_b = a_n - g_n in direction, forward axis at the heading.
 Eigen::Quaterniond attitude_of(const AlignmentFindings& findings);
 
+/// Sets stamp, position and velocity of an epoch whose attitude is known, from those of the
+/// antenna.
+void place_at_imu(state::Epoch& epoch, const GnssFix& fix,
+                  const Eigen::Vector3d& antenna_velocity_n, const Eigen::Vector3d& omega_b);
+
 /// State and covariance.
 ///   level: f x dtheta = -(b_a + n + R^T da) across f, so dtheta = f x (...) / |f|^2
 ///   heading: rotation about f that puts the forward axis right

@@ -62,6 +62,10 @@ class DriftMeter : public state::Sink {
     if (observer_) observer_->notice(notice);
   }
 
+  void catching_up(std::size_t) override {
+    if (observer_) observer_->progress(source_.progress());
+  }
+
   OutageRunResult result() const {
     OutageRunResult result;
     result.first_fix_ns = source_.first_fix_ns().value_or(0);

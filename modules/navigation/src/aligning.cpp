@@ -15,7 +15,12 @@ std::optional<Start> Aligning::take(const Measurement& measurement) {
   return look_through_screen(false);
 }
 
-std::optional<Start> Aligning::finish() { return look_through_screen(true); }
+std::optional<Start> Aligning::finish() {
+  if (std::optional<Start> start = look_through_screen(true)) return start;
+  aligner_.finish();
+  if (!aligner_.initial()) return std::nullopt;
+  return start();
+}
 
 void Aligning::restart() {
   aligner_.restart();

@@ -53,6 +53,7 @@ void NavigationRun::go_through_waiting() {
   while (!waiting_.empty()) {
     const Measurement next = std::move(waiting_.front());
     waiting_.pop_front();
+    sink_.catching_up(waiting_.size());
     take(next);
   }
 }

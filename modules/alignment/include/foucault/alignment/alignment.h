@@ -17,10 +17,6 @@ class AlignmentOptions : public Configurable {
   std::string mode = "auto";                               ///< auto | given
   std::optional<double> roll_deg, pitch_deg, heading_deg;  ///< in auto: overrides what is found
   double roll_sigma_deg = 0.5, pitch_sigma_deg = 0.5, heading_sigma_deg = 1.0;  ///< of given angles
-  double min_speed_m_s = 3.0;       ///< slower, a course says nothing about the heading
-  double max_course_sigma_deg = 3;  ///< of one course, from the fixes' sigmas
-  double max_turn_rate_deg_s = 6;   ///< faster, the vehicle is not straight
-  double mounting_sigma_deg = 0.3;  ///< course against forward axis: mounting, crab angle
   double min_rest_s = 3;            ///< shorter, a rest is not used
   double max_rest_s = 300;          ///< how far back a start may lie; bounds the memory
 
@@ -56,6 +52,9 @@ class Aligner {
   /// covariance; increments must not overlap.
   void add(const GnssFix& fix);
   void add(const ImuIncrement& increment);
+
+  /// Nothing follows: the last chance for a start.
+  void finish();
 
   /// The state to start from once it is known; its stamp may lie in the past.
   const std::optional<state::Epoch>& initial() const;

@@ -46,6 +46,7 @@ class Smoother : public state::Estimator {
     }
     void notice(const state::Notice& notice) override;
     bool wants_predictions() const override { return sink_.wants_predictions(); }
+    void catching_up(std::size_t left) override { sink_.catching_up(left); }
     void warning(const state::Notice& notice) override { warnings_.push_back(notice); }
     /// Those of the forward run; they do not wait.
     void prediction(const state::PredictionResult& result) override { sink_.prediction(result); }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
 
 #include "foucault/core/measurement.h"
@@ -38,6 +39,9 @@ class Sink {
   /// Predictions cost time and come only if they are wanted, from the beginning on.
   virtual bool wants_predictions() const { return false; }
   virtual void prediction(const PredictionResult&) {}
+  /// Before each measurement that was held back, as before an alignment, with how many wait behind
+  /// it: for progress. What this throws ends the run.
+  virtual void catching_up(std::size_t /*left*/) {}
   /// What seems wrong with the recording; at the end, after everything else.
   virtual void warning(const Notice&) {}
 };

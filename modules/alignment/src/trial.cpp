@@ -1,0 +1,65 @@
+#include "trial.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "foucault/core/constants.h"
+#include "foucault/core/median.h"
+#include "foucault/core/time.h"
+#include "foucault/measurement/gnss_position.h"
+#include "foucault/measurement/gnss_velocity.h"
+#include "motion_fit.h"
+
+namespace foucault::alignment {
+namespace {
+
+constexpr double kStandsOut = 25;  // of a chi-square of three: 2e-5 by chance
+constexpr double kMedian = 2.366;  // of a chi-square of three
+constexpr std::size_t kRemembered = 301;
+constexpr std::size_t kFewest = 5;  // squares of which a median tells something
+constexpr double kLatency = 0.1;    // [s], of measured velocities
+
+}  // namespace
+
+Trial::Trial(const imu::ImuNoise& noise, const state::Layout& layout, const state::Epoch& start)
+    : navigator_(noise, layout, ekf::EkfOptions()) {
+  navigator_.start(start);
+}
+
+void Trial::propagate(const ImuIncrement& increment) {
+  navigator_.propagate(increment);
+  rates_.add(increment);
+}
+
+void Trial::update(const GnssFix& fix) {
+  use(measurement::gnss_position(fix));
+  if (!velocity_is_better(fix)) return;
+  GnssFix delayed = fix;  // late by up to kLatency: as much as the vehicle accelerates in it
+  const Eigen::Vector3d acceleration_n =
+      navigator_.state().q_n_b * rates_.accel_b + Eigen::Vector3d(0, 0, kStandardGravity);
+  delayed.velocity_covariance += kLatency * kLatency * acceleration_n * acceleration_n.transpose();
+  use(measurement::gnss_velocity(delayed));
+}
+
+void Trial::use(const measurement::ObservationPtr& observation) {
+  const state::Innovation innovation = navigator_.innovation(*observation);
+  const Eigen::LLT<Eigen::Matrix3d> llt(innovation.covariance);
+  const double square = innovation.value.dot(llt.solve(innovation.value));
+  const double limit = kStandsOut * level();
+  agreement_.squares += std::min(square, limit);
+  agreement_.log_determinants += 2 * Eigen::Matrix3d(llt.matrixL()).diagonal().array().log().sum();
+  if (recent_.size() < kRemembered) {
+    recent_.push_back(square);
+  } else {
+    recent_[next_++ % kRemembered] = square;
+  }
+  left_out_ = square > limit && !left_out_;
+  if (!left_out_) navigator_.update(observation);
+}
+
+double Trial::level() const {
+  return recent_.size() < kFewest ? 1.0 : std::max(1.0, median(recent_) / kMedian);
+}
+
+}  // namespace foucault::alignment
