@@ -47,7 +47,8 @@ std::function<void(Call&)> declare_simulate(CLI::App& app) {
       "  foucault simulate --imu ADIS16465 --duration 600 --seed 7 --out trip.rawlog\n"
       "  foucault simulate --duration 460 --fault ramp --out ramp.rawlog\n"
       "  foucault simulate --set scenario.name=motorway --set scenario.gnss_rate_hz=5 --out "
-      "m.rawlog");
+      "m.rawlog\n"
+      "  foucault simulate --set scenario.name=boat --set scenario.skip_s=60 --out b.rawlog");
   return [o](Call& call) {
     SimulationSettings settings;
     apply(o->config, settings);

@@ -28,10 +28,6 @@ constexpr double kShortestFlight = 600;         ///< a shorter one does not land
 constexpr double kFirstTurnAfter = 100;         ///< [s]
 constexpr double kMaxDeviation = 40 * kDegree;  ///< beyond, turns lead back to the first heading
 
-double toward(double value, double target, double step) {
-  return value + std::clamp(target - value, -step, step);
-}
-
 /// The highest altitude from which a flight of this length can be down in time.
 double reachable_altitude(double flight_s) {
   if (flight_s < kShortestFlight) return kCruiseAltitude;
@@ -43,9 +39,9 @@ double reachable_altitude(double flight_s) {
 
 Airliner::Airliner(const ScenarioOptions& options)
     : rest_s_(options.rest_s),
-      duration_s_(options.duration_s),
+      duration_s_(options.skip_s + options.duration_s),
       start_height_(options.height_m),
-      cruise_altitude_(reachable_altitude(options.duration_s - options.rest_s)),
+      cruise_altitude_(reachable_altitude(duration_s_ - rest_s_)),
       draws_(options.seed, RandomStream::motion),
       position_(options.start_position()),
       first_heading_(start_heading(options)),

@@ -47,7 +47,8 @@ GnssFix GnssSimulator::measure(const Motion& motion, int64_t t_ns, double t) {
   fix.antenna = geodesy::wgs84::ecef_to_geodetic(antenna_position_e(motion, options_.lever_arm_m) +
                                                  R_e_n * position_noise_n);
   fix.position_covariance = sigma.cwiseAbs2().asDiagonal();
-  fix.quality = degraded(t) ? FixQuality::float_rtk : FixQuality::fixed_rtk;
+  fix.quality = degraded(t) ? FixQuality::float_rtk
+                            : fix_quality(options_.gnss_quality).value_or(FixQuality::unknown);
   fix.p_b_a = p_b_a_;
   if (velocity_sigma > 0) {
     fix.velocity_n = antenna_velocity_n(motion, options_.lever_arm_m) + velocity_noise_n;

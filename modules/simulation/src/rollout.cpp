@@ -1,5 +1,6 @@
 #include "rollout.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "foucault/core/constants.h"
@@ -28,6 +29,10 @@ double SineSum::slope(double x) const {
     sum += term.amplitude * wavenumber * std::cos(wavenumber * x + term.phase);
   }
   return sum;
+}
+
+double toward(double value, double target, double step) {
+  return value + std::clamp(target - value, -step, step);
 }
 
 void move_along_earth(Geodetic& position, double north, double east) {

@@ -40,6 +40,9 @@ class SineSum {
   std::vector<Term> terms_;
 };
 
+/// `value` on its way to `target`, by `step` at most.
+double toward(double value, double target, double step);
+
 /// Moves by north and east [m] along the ellipsoid.
 void move_along_earth(Geodetic& position, double north, double east);
 

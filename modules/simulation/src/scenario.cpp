@@ -1,6 +1,5 @@
 #include "foucault/simulation/scenario.h"
 
-#include <array>
 #include <cmath>
 #include <functional>
 #include <memory>
@@ -13,6 +12,7 @@
 #include "foucault/geodesy/local_frame.h"
 #include "road_vehicle.h"
 #include "rollout.h"
+#include "vehicle_styles.h"
 
 namespace foucault::simulation {
 namespace {
@@ -36,24 +36,40 @@ class Standing : public Rollout {
   RolloutPose pose_;
 };
 
+using MakeRollout = std::function<std::unique_ptr<Rollout>(const ScenarioOptions&)>;
+
 /// A kind of motion: its name, the knots of its splines, and what to step through time.
 struct Scenario {
   const char* name;
   double knot_interval;  ///< [s]
-  std::function<std::unique_ptr<Rollout>(const ScenarioOptions&)> rollout;
+  MakeRollout rollout;
 };
 
-const std::array<Scenario, 4>& scenarios() {
-  using namespace simulation;
-  static const std::array<Scenario, 4> kScenarios{
-      {{"city", 0.5,
-        [](const ScenarioOptions& o) { return std::make_unique<RoadVehicle>(city_style(), o); }},
-       {"motorway", 0.5,
-        [](const ScenarioOptions& o) {
-          return std::make_unique<RoadVehicle>(motorway_style(), o);
-        }},
-       {"airliner", 1.0, [](const ScenarioOptions& o) { return std::make_unique<Airliner>(o); }},
-       {"static", 10.0, [](const ScenarioOptions& o) { return std::make_unique<Standing>(o); }}}};
+MakeRollout road(RoadStyle style) {
+  return [style](const ScenarioOptions& o) { return std::make_unique<RoadVehicle>(style, o); };
+}
+
+MakeRollout vehicle(VehicleStyle (*style)(Draws&)) {
+  return [style](const ScenarioOptions& o) {
+    Draws draws(o.seed, RandomStream::surface);
+    return std::make_unique<Vehicle>(style(draws), o);
+  };
+}
+
+const std::vector<Scenario>& scenarios() {
+  static const std::vector<Scenario> kScenarios{
+      {"city", 0.5, road(city_style())},
+      {"motorway", 0.5, road(motorway_style())},
+      {"airliner", 1.0, [](const ScenarioOptions& o) { return std::make_unique<Airliner>(o); }},
+      {"static", 10.0, [](const ScenarioOptions& o) { return std::make_unique<Standing>(o); }},
+      {"walk", 0.05, vehicle(walk_style)},
+      {"robot", 0.1, vehicle(robot_style)},
+      {"rows", 0.25, vehicle(rows_style)},
+      {"boat", 0.25, vehicle(boat_style)},
+      {"copter", 0.2, vehicle(copter_style)},
+      {"fixed_wing", 0.25, vehicle(fixed_wing_style)},
+      {"train", 0.5, vehicle(train_style)},
+      {"reversing", 0.25, vehicle(reversing_style)}};
   return kScenarios;
 }
 
@@ -71,23 +87,33 @@ Vibration vibration_of(const ScenarioOptions& options) {
   return {options.vibration_hz, options.vibration_m_s2 / (w * w), options.vibration_deg * kDegree};
 }
 
-/// The poses of a roll-out at the knots: at rest before the start, then every knot interval.
+/// The poses of a roll-out at the knots; before the trip it stands.
 Trajectory follow(Rollout& rollout, const ScenarioOptions& options, double knot_interval) {
   const std::size_t count = QuinticSpline::controls_for(options.duration_s, knot_interval);
-  const int steps = static_cast<int>(std::lround(knot_interval / kRolloutStep));
+  const int64_t steps = std::lround(knot_interval / kRolloutStep);
   const geodesy::LocalFrame frame(options.start_position());
   std::vector<Eigen::Vector3d> positions, angles;
   positions.reserve(count);
   angles.reserve(count);
-  for (std::size_t k = 0; k < count; ++k) {
-    const bool started = k > QuinticSpline::kControlsBefore;
-    for (int i = 0; started && i < steps; ++i) rollout.advance(kRolloutStep);
+  int64_t due = std::lround(options.skip_s / kRolloutStep) - QuinticSpline::kControlsBefore * steps;
+  int64_t done = 0;
+  for (std::size_t k = 0; k < count; ++k, due += steps) {
+    for (; done < due; ++done) rollout.advance(kRolloutStep);
     const RolloutPose pose = rollout.pose();
     positions.push_back(frame.to_local(pose.position));
     angles.push_back(pose.euler);
   }
   return Trajectory(options.start_position(), QuinticSpline(knot_interval, std::move(positions)),
                     QuinticSpline(knot_interval, std::move(angles)), vibration_of(options));
+}
+
+std::vector<std::string> qualities() {
+  std::vector<std::string> names;
+  for (const FixQuality quality : {FixQuality::single, FixQuality::differential, FixQuality::ppp,
+                                   FixQuality::float_rtk, FixQuality::fixed_rtk}) {
+    names.emplace_back(name_of(quality));
+  }
+  return names;
 }
 
 }  // namespace
@@ -101,6 +127,7 @@ void ScenarioOptions::fields(ConfigFields& f) {
   f.number("height_m", height_m, {-1000, 20000}, "start height above the ellipsoid");
   f.optional_number("heading_deg", heading_deg, {-360, 360}, "at the start; none: by the seed");
   f.number("rest_s", rest_s, kNotNegative, "standing still before the trip");
+  f.number("skip_s", skip_s, kNotNegative, "the recording begins so long after rest and trip do");
   f.integer("gps_week", gps_week, {0, 10000}, "start, GPS week");
   f.number("gps_sow_s", gps_sow_s, {0, kSecondsPerWeek}, "start, second of the GPS week");
   f.number("imu_rate_hz", imu_rate_hz, {10, 10000}, "samples per second");
@@ -117,6 +144,7 @@ void ScenarioOptions::fields(ConfigFields& f) {
   f.vector3("gnss_sigma_m", gnss_sigma_m, "position noise north, east, down");
   f.number("gnss_velocity_sigma_m_s", gnss_velocity_sigma_m_s, kNotNegative,
            "velocity noise; 0: fixes without velocity");
+  f.text("gnss_quality", gnss_quality, qualities(), "of the fixes where they are not degraded");
   f.flag("gnss_noise", gnss_noise, "false: exact fixes that report the sigmas all the same");
   f.number("gnss_degraded_start_s", gnss_degraded_start_s, kNotNegative,
            "poor GNSS, seconds after start");

@@ -27,8 +27,9 @@ const ScenarioOptions& checked(const ScenarioOptions& options) {
     throw UsageError(
         "scenario: gnss_sigma_m must be positive (gnss_noise: false makes exact fixes)");
   }
-  if (!(options.rest_s < options.duration_s) && options.name != "static") {
-    throw UsageError("scenario: rest_s must be shorter than duration_s, or nothing moves");
+  if (!(options.rest_s < options.skip_s + options.duration_s) && options.name != "static") {
+    throw UsageError(
+        "scenario: rest_s must be shorter than duration_s (and skip_s), or nothing moves");
   }
   return options;
 }

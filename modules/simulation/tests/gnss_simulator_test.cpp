@@ -79,6 +79,17 @@ TEST(GnssSimulator, NoiseIsAsReported) {
   EXPECT_NEAR(velocity_square, 0.01, 0.0004);
 }
 
+TEST(GnssSimulator, ReportsTheQualityThatItIsTold) {
+  ScenarioOptions options;
+  options.duration_s = 100;
+  options.gnss_quality = "single";
+  options.gnss_degraded_start_s = 50;
+  options.gnss_degraded_length_s = 20;
+  const Trajectory truth = make_trajectory(options);
+  EXPECT_EQ(fix_at(truth, options, 49.9).quality, FixQuality::single);
+  EXPECT_EQ(fix_at(truth, options, 50).quality, FixQuality::float_rtk);
+}
+
 TEST(GnssSimulator, DegradesWithinItsWindow) {
   ScenarioOptions options;
   options.duration_s = 100;

@@ -122,7 +122,8 @@ INSTANTIATE_TEST_SUITE_P(
     Scenarios, TrajectoryOf,
     ::testing::Values(Case{"city", 30.45, 114.47, 0, 0}, Case{"city", -33, 18, 1, 0.1},
                       Case{"motorway", 50, 8, 0, 0}, Case{"airliner", 30.45, 114.47, 0, 0},
-                      Case{"airliner", 80, 179.99, 0, 0}),
+                      Case{"airliner", 80, 179.99, 0, 0}, Case{"walk", 50, 8, 0, 0},
+                      Case{"boat", 60, -179.999, 0, 0}, Case{"copter", -33, 18, 0, 0}),
     [](const auto& test) { return test.param.scenario + std::to_string(test.index); });
 
 TEST(Trajectory, AtRestFeelsGravityAndEarthRateOnly) {

@@ -7,8 +7,8 @@
 namespace foucault::simulation {
 
 /// GNSS fixes of an antenna on a lever arm: true antenna position (and velocity if asked for) plus
-/// white noise; the covariance reported is that of the noise. Quality: fixed_rtk, or float_rtk
-/// while degraded.
+/// white noise; the covariance reported is that of the noise. Quality: as told, or float_rtk while
+/// degraded.
 class GnssSimulator {
  public:
   /// Reads the gnss_* fields, lever_arm_m, mounting_deg and seed.

@@ -23,7 +23,8 @@ enum class RandomStream : uint32_t {
   scale_factor,
   gnss_position,
   gnss_velocity,
-  faults
+  faults,
+  start
 };
 
 /// Reproducible draws: the same seed and stream give the same numbers.

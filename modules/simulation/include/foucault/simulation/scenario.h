@@ -22,6 +22,7 @@ class ScenarioOptions : public Configurable {
   double latitude_deg = 30.45, longitude_deg = 114.47, height_m = 20;
   std::optional<double> heading_deg;  ///< at the start; drawn from the seed if absent
   double rest_s = 40;                 ///< standing still before the trip
+  double skip_s = 0;                  ///< of rest and trip, before the recording begins
   int64_t gps_week = 2200;
   double gps_sow_s = 357000;
 
@@ -36,6 +37,7 @@ class ScenarioOptions : public Configurable {
   double gnss_phase_s = 0;                         ///< of the first fix after start
   Eigen::Vector3d gnss_sigma_m{0.01, 0.01, 0.02};  ///< north, east, down
   double gnss_velocity_sigma_m_s = 0;              ///< 0: no velocity in the fixes
+  std::string gnss_quality = "fixed_rtk";          ///< fix_quality.h; while degraded: float_rtk
   bool gnss_noise = true;  ///< false: exact positions, sigmas reported all the same
   double gnss_degraded_start_s = 0, gnss_degraded_length_s = 0;  ///< after start
   double gnss_degraded_factor = 10;                              ///< on every sigma
@@ -55,7 +57,11 @@ std::vector<std::string> scenario_names();
 
 /// The true motion of a scenario, duration_s long or a little longer:
 /// `city` 0-16 m/s with stops, right-angle turns and hills; `motorway` 30 m/s; `airliner` take-off,
-/// climb, 250 m/s at 10 km with banked turns, descent, landing; `static`.
+/// climb, 250 m/s at 10 km with banked turns, descent, landing; `static`;
+/// `walk` 1.2-1.6 m/s, swaying with its steps; `robot` 0.5-2.6 m/s, turns tightly or on the spot,
+/// stops; `rows` a tractor, up and down at 2-3 m/s; `boat` 3-8 m/s in waves, with leeway up to
+/// 20 deg; `copter` 0-10 m/s anywhere relative to its nose; `fixed_wing` 15-25 m/s in a wind, crab
+/// angle up to 15 deg; `train` 10-40 m/s, wide curves; `reversing` a car, first backward.
 /// The same options give the same motion. Throws UsageError for an unknown name.
 Trajectory make_trajectory(const ScenarioOptions& options);
 

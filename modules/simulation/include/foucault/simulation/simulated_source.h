@@ -28,7 +28,7 @@ class StampSequence {
 /// A simulated recording as a Source: GnssFix, ReferencePose (the truth) and ImuIncrement in the
 /// order of Measurement, from the start to duration_s after it. Stamps are multiples of 100 ns, so
 /// that a rawlog keeps them exactly.
-/// Memory: the control points of the trajectory, about 100 bytes a second, and no more.
+/// Memory: the control points of the trajectory, 100 bytes to 1 kB a second, and no more.
 class SimulatedSource : public state::Source {
  public:
   /// Throws UsageError for options that make no sense together.
