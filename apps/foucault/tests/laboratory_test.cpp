@@ -1,6 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "jobs/demo_job.h"
 #include "jobs/laboratory_job.h"
 #include "jobs/simulation_job.h"
@@ -40,6 +42,23 @@ TEST(LaboratoryJob, AReturnOnARecording) {
   EXPECT_EQ(outcome.error, "");
   EXPECT_EQ(outcome.outages, 1);
   EXPECT_EQ(study_return({folder / "none", 1, 10, "ekf"}, settings).outages, 0);
+}
+
+class Starts : public ::testing::TestWithParam<int64_t> {};
+INSTANTIATE_TEST_SUITE_P(Seeds, Starts, ::testing::Values(1, 6, 11, 16));
+
+/// Of `foucault lab starts`, five each.
+TEST_P(Starts, AreRightWhereTheDataTellTheHeading) {
+  double squares = 0;
+  std::size_t headings = 0;
+  for (int64_t seed = GetParam(); seed < GetParam() + 5; ++seed) {
+    const laboratory::StartOutcome outcome = study_start(seed, Settings());
+    EXPECT_TRUE(outcome.is_right()) << seed << ' ' << outcome.what << ' ' << outcome.refusal;
+    for (const auto& h : outcome.headings) squares += std::pow(h.error / h.sigma, 2);
+    headings += outcome.headings.size();
+  }
+  EXPECT_GE(headings, 15u);
+  EXPECT_LT(squares / static_cast<double>(headings), 3);
 }
 
 TEST(LaboratoryPage, CurvesOfEveryMotion) {

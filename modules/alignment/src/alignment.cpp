@@ -14,6 +14,7 @@
 #include "foucault/geodesy/local_frame.h"
 #include "foucault/geodesy/wgs84.h"
 #include "foucault/state/vehicle_attitude.h"
+#include "given_start.h"
 #include "heading_bank.h"
 #include "initial_state.h"
 #include "motion_fit.h"
@@ -126,13 +127,13 @@ class Aligner::Impl {
   void restart() { *this = Impl(options_, noise_, mounting_, layout_); }
   int64_t earliest_start_ns() const;
   std::string why_not() const;
+  std::string why_undecided() const;
 
   std::optional<state::Epoch> initial_;
   std::string summary_;
 
  private:
   bool all_given() const { return options_.mode == "given"; }
-  void begin_given(const GnssFix& fix);
   void note_hole(const ImuIncrement& increment);
   void take(const Step& step);
 
@@ -144,6 +145,10 @@ class Aligner::Impl {
   void begin(AlignmentFindings findings, bool at_rest);
 
   void throw_if_turned_over() const;
+  bool prior_is_wrong() const;
+  void begin_again();
+  double gyro_prior() const;
+  double accel_prior() const;
   void decide();
   void conclude(double largest_sigma);
   void start_along_course();
@@ -165,26 +170,27 @@ class Aligner::Impl {
   std::optional<FoundRest> rest_found_;  ///< the drive began with it
   Track track_;
   HeadingBank bank_;
-  int64_t begin_ns_ = 0;     ///< of the bank
-  int64_t next_try_ns_ = 0;  ///< after one that failed
+  std::optional<AlignmentFindings> first_findings_;  ///< that the bank began from
+  int64_t begin_ns_ = 0;                             ///< of the bank
+  int64_t next_try_ns_ = 0;                          ///< after one that failed
   std::optional<HeadingBelief> belief_;
   std::optional<state::Epoch> along_course_;  ///< the latest of which the course is known
   std::string failure_;
 
-  std::optional<GnssFix> first_given_;  ///< mode given: the fix to start from
-  Vector3d rate_sum_ = Vector3d::Zero();
-  double rate_time_ = 0;
+  GivenStart given_start_;
 
-  double latitude_ = 0;
   std::optional<int64_t> first_increment_ns_, last_increment_ns_, first_fix_ns_, last_fix_ns_;
 };
 
 void Aligner::Impl::add(const GnssFix& fix) {
   if (!first_fix_ns_) first_fix_ns_ = fix.t_ns;
   last_fix_ns_ = fix.t_ns;
-  latitude_ = fix.antenna.latitude;
   if (initial_) return;
-  if (all_given()) return begin_given(fix);
+  if (all_given()) {
+    if (const auto start = given_start_.add(fix, mounting_, given_, noise_))
+      accept(*start, "as given");
+    return;
+  }
   rest_.add(fix);
   track_.add(fix);
 }
@@ -194,12 +200,7 @@ void Aligner::Impl::add(const ImuIncrement& increment) {
   if (!first_increment_ns_) first_increment_ns_ = increment.t_begin_ns;
   last_increment_ns_ = increment.t_end_ns;
   if (initial_) return;
-  if (all_given()) {
-    rate_sum_ += increment.dtheta_b;
-    rate_time_ += increment.dt();
-    if (first_given_ && first_given_->t_ns < *first_increment_ns_) first_given_.reset();
-    return;
-  }
+  if (all_given()) return given_start_.add(increment);
   rest_.add(increment);
   for (const Step& step : track_.add(increment)) {
     if (!initial_) take(step);
@@ -226,7 +227,7 @@ void Aligner::Impl::note_hole(const ImuIncrement& increment) {
   rest_ = RestDetector(options_.min_rest_s, options_.max_rest_s);
   track_ = Track(options_.max_rest_s);
   forget_drive();
-  first_given_.reset();
+  given_start_.restart();
 }
 
 // The beginning -----------------------------------------------------------------------------------
@@ -240,11 +241,6 @@ void Aligner::Impl::try_to_begin() {
     return begin(
         findings_at_rest(rest_found_->means, fixes_at_rest().back(), noise_, mounting_.q_v_b),
         true);
-  }
-  if (rests && rest_.ended() && getenv("ALDBG")) {
-    const MotionLine l = fit_line(fixes_at_rest());
-    fprintf(stderr, "rest ended %.1f s line %.3f sigma %.3f\n", rest_.means().duration(),
-            l.velocity_n.norm(), l.sigma);
   }
   if (rests && !rest_.ended()) return;
   if (rests && rest_is_proven()) {
@@ -298,8 +294,8 @@ void Aligner::Impl::begin(AlignmentFindings findings, bool at_rest) {
   if (at_rest && up) throw DataError(wrong_axes(*up));
   const int count = given_.heading ? 1 : kHypotheses;
   const double gap = 2 * kPi / count;
-  const double prior_variance = noise_.gyro_turn_on_sigma * noise_.gyro_turn_on_sigma +
-                                noise_.gyro_bias_sigma * noise_.gyro_bias_sigma;
+  const double prior_variance = gyro_prior() * gyro_prior();
+  first_findings_ = findings;
   findings.heading_variance = gap * gap / 4;
   std::vector<state::Epoch> starts;
   std::vector<double> log_prior;
@@ -353,17 +349,51 @@ void Aligner::Impl::throw_if_turned_over() const {
     throw DataError(wrong_axes(*up));
 }
 
+/// A bias that is found to be beyond what was thought possible (one in 16000) was not.
+bool Aligner::Impl::prior_is_wrong() const {
+  constexpr double kBeyond = 4;  // sigmas
+  const state::Epoch& epoch = belief_->best;
+  const auto beyond = [&](const Vector3d& bias, const Vector3d& sigma, double prior) {
+    return (bias.cwiseAbs().array() > kBeyond * (prior + std::sqrt(belief_->level) * sigma.array()))
+        .any();
+  };
+  return beyond(epoch.bias.gyro, epoch.sigma_of(state::block::gyro_bias), gyro_prior()) ||
+         beyond(epoch.bias.accel, epoch.sigma_of(state::block::accel_bias), accel_prior());
+}
+
+/// From the same findings, with priors that what was found lies within. What follows may show more.
+void Aligner::Impl::begin_again() {
+  const state::Epoch& epoch = belief_->best;
+  noise_.gyro_turn_on_sigma =
+      std::max(noise_.gyro_turn_on_sigma, epoch.bias.gyro.cwiseAbs().maxCoeff());
+  noise_.accel_turn_on_sigma =
+      std::max(noise_.accel_turn_on_sigma, epoch.bias.accel.cwiseAbs().maxCoeff());
+  const std::optional<FoundRest> rest = rest_found_;
+  const RestDetector detector = rest_;
+  forget_drive();
+  rest_found_ = rest;
+  if (rest) {
+    begin(*first_findings_, true);
+  } else {
+    const std::vector<GnssFix> fixes = track_.first_fixes(kStretch, begin_ns_);
+    begin(findings_in_motion(fixes, track_.steps(), noise_, mounting_.q_v_b), false);
+  }
+  rest_ = detector;
+}
+
+double Aligner::Impl::gyro_prior() const {
+  return std::hypot(noise_.gyro_turn_on_sigma, noise_.gyro_bias_sigma);
+}
+double Aligner::Impl::accel_prior() const {
+  return std::hypot(noise_.accel_turn_on_sigma, noise_.accel_bias_sigma);
+}
+
 void Aligner::Impl::decide() {
   belief_ = bank_.belief();
   note_course();
-  if (getenv("ALDBG")) {
-    fprintf(stderr, "t %.1f age %.1f n %zu heading %.1f sigma %.2f level %.1f\n",
-            belief_->best.t_ns * 1e-9 - 1.3857624e9, seconds_between(begin_ns_, belief_->best.t_ns),
-            bank_.candidates().size(), belief_->heading / kDegree, belief_->sigma / kDegree,
-            belief_->level);
-  }
   const int64_t now_ns = belief_->best.t_ns;
   const double age = seconds_between(begin_ns_, now_ns);
+  if (prior_is_wrong()) return begin_again();
   if (now_ns < next_try_ns_) return;
   throw_if_turned_over();
   for (const Patience& patience : kPatience) {
@@ -425,12 +455,6 @@ std::vector<Refined> Aligner::Impl::refined_candidates(double level) const {
         refine(candidate, level, track_.steps(), noise_, layout_, make_start);
     if (refined) all.push_back(*refined);
   }
-  if (getenv("ALDBG"))
-    for (auto& r : all)
-      fprintf(stderr, "  refined %.2f -> %.2f sigma %.2f level %.1f misfit %.1f\n",
-              heading_of(r.start) / kDegree, heading_of(r.end) / kDegree,
-              state::vehicle_attitude(r.end, mounting_).sigma.z() / kDegree, r.level,
-              r.agreement.misfit(level));
   std::sort(all.begin(), all.end(), [&](const Refined& a, const Refined& b) {
     return a.agreement.misfit(level) < b.agreement.misfit(level);
   });
@@ -447,7 +471,8 @@ void Aligner::Impl::conclude(double largest_sigma) {
   }
   const Refined& best = all.front();
   const double sigma = heading_sigma(best);
-  failure_ = fmt::format("the fixes tell the heading to {:.0f} deg only", sigma / kDegree);
+  failure_ = fmt::format("the heading is known to {:.0f} deg only, {:.0f} are needed",
+                         sigma / kDegree, kLargestSigma / kDegree);
   if (!given_.heading && sigma > largest_sigma) return;
   for (const Refined& other : all) {
     const double apart = std::abs(so3::wrap(heading_of(other.end) - heading_of(best.end)));
@@ -464,6 +489,7 @@ void Aligner::Impl::conclude(double largest_sigma) {
                                  : fmt::format(", after which its heading was known to {:.1f} deg",
                                                sigma / kDegree)));
 }
+
 void Aligner::Impl::note_course() {
   constexpr double kClear = 5 * kDegree;
   const state::Epoch& epoch = belief_->best;
@@ -508,11 +534,21 @@ std::optional<std::string> Aligner::Impl::wrong_up(const Vector3d& up_b) const {
 }
 
 int64_t Aligner::Impl::earliest_start_ns() const {
-  if (first_given_) return first_given_->t_ns;
+  if (given_start_.fix()) return given_start_.fix()->t_ns;
   if (!last_increment_ns_) {
     return last_fix_ns_ ? *last_fix_ns_ - kNanosecondsPerSecond : INT64_MIN;
   }
   return all_given() ? *last_increment_ns_ : std::min(track_.begin_ns(), *last_increment_ns_);
+}
+
+std::string Aligner::Impl::why_undecided() const {
+  const double seconds = seconds_between(begin_ns_, belief_->best.t_ns);
+  if (belief_->sigma <= kLargestSigma && !failure_.empty())
+    return fmt::format("after {:.0f} s of motion {}", seconds, failure_);
+  return fmt::format(
+      "{:.0f} s of motion tell the heading to {:.0f} deg only, {:.0f} are needed: the vehicle "
+      "turned or accelerated too little for its fixes",
+      seconds, belief_->sigma / kDegree, kLargestSigma / kDegree);
 }
 
 std::string Aligner::Impl::why_not() const {
@@ -532,18 +568,7 @@ std::string Aligner::Impl::why_not() const {
   if (all_given()) return head + "there are fewer than two fixes within the IMU data";
   if (const std::optional<std::string> up = wrong_up(track_.mean_force_b()))
     return head + wrong_axes(*up);
-  if (belief_) {
-    const bool tried = belief_->sigma <= kLargestSigma && !failure_.empty();
-    const std::string why = tried ? failure_
-                                  : fmt::format("the fixes tell the heading to {:.0f} deg only",
-                                                belief_->sigma / kDegree);
-    return head +
-           fmt::format(
-               "{} after {:.0f} s, {:.0f} deg are needed: the vehicle turned or accelerated "
-               "too little for its GNSS",
-               why, seconds_between(begin_ns_, belief_->best.t_ns), kLargestSigma / kDegree) +
-           remedy;
-  }
+  if (belief_) return head + why_undecided() + remedy;
   if (rest_.established()) {
     return head + "the vehicle rested all the time, which does not tell the heading" + remedy;
   }
@@ -553,35 +578,6 @@ std::string Aligner::Impl::why_not() const {
              "and never were there",
              kStretch, kLargestHole) +
          remedy;
-}
-
-/// Mode given: the first fix, with its velocity or the one that the next fix gives.
-void Aligner::Impl::begin_given(const GnssFix& fix) {
-  const bool covered = last_increment_ns_ && first_given_;
-  const GnssFix start = covered ? *first_given_ : fix;
-  const Vector3d omega_b =
-      rate_time_ > 0 ? Vector3d(rate_sum_ / rate_time_) : Vector3d(Vector3d::Zero());
-  if (start.velocity_n && last_increment_ns_) {
-    accept(given_state(start, *start.velocity_n, start.velocity_covariance, omega_b,
-                       mounting_.q_v_b, given_, noise_),
-           "as given");
-    return;
-  }
-  if (!covered) {
-    first_given_ = fix;
-    rate_sum_.setZero();
-    rate_time_ = 0;
-    return;
-  }
-  constexpr double kAcceleration = 1.5;  // [m/s^2] within the interval
-  const double dt = seconds_between(start.t_ns, fix.t_ns);
-  if (dt <= 0) return;
-  const Vector3d velocity_n = geodesy::LocalFrame(start.antenna).to_local(fix.antenna) / dt;
-  const double unknown = kAcceleration * dt / 2;
-  const Matrix3d covariance = (start.position_covariance + fix.position_covariance) / (dt * dt) +
-                              unknown * unknown * Matrix3d::Identity();
-  accept(given_state(start, velocity_n, covariance, omega_b, mounting_.q_v_b, given_, noise_),
-         "as given");
 }
 
 Aligner::Aligner(const AlignmentOptions& options, const imu::ImuNoise& noise,

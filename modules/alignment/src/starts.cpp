@@ -18,8 +18,8 @@ using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
 constexpr double kRestSpeedSigma = 0.01;  // [m/s]
-/// Measurements used in the alignment are used again in the run: their variances are doubled.
-constexpr double kReuse = 2;
+/// Measurements that are used again in the run have their variances doubled.
+constexpr double kDoubled = 2;
 constexpr double kForceSigma = 0.05;  // [m/s^2]: what latency and changing forces leave
 constexpr double kUnknownRate = 1;    // [rad/s]
 
@@ -49,9 +49,9 @@ AlignmentFindings findings_at_rest(const RestMeans& means, const GnssFix& fix,
   const double gyro_white = noise.gyro_noise_density * noise.gyro_noise_density / T;
   findings.specific_force_b = means.accel_b;
   findings.specific_force_covariance =
-      (kReuse * means.accel_variance.cwiseMax(accel_white)).asDiagonal();
+      (kDoubled * means.accel_variance.cwiseMax(accel_white)).asDiagonal();
   findings.gyro_b = means.gyro_b;
-  findings.gyro_covariance = (kReuse * means.gyro_variance.cwiseMax(gyro_white)).asDiagonal();
+  findings.gyro_covariance = (kDoubled * means.gyro_variance.cwiseMax(gyro_white)).asDiagonal();
   return findings;
 }
 
@@ -204,7 +204,7 @@ state::Epoch state_in_motion(const std::vector<GnssFix>& fixes, const std::deque
   place_at_imu(epoch, first, velocity.value_n, omega_b);
   state::NodeMatrix S = state::NodeMatrix::Zero();
   state::part(S, state::block::position, state::block::position) = first.position_covariance;
-  state::part(S, state::block::velocity, state::block::velocity) = kReuse * velocity.covariance;
+  state::part(S, state::block::velocity, state::block::velocity) = kDoubled * velocity.covariance;
   S.block<9, 9>(6, 6) = found.covariance;
   state::NodeMatrix J = state::NodeMatrix::Identity();
   const Matrix3d R = epoch.q_n_b.toRotationMatrix();

@@ -434,6 +434,21 @@ TEST(AlignmentWhileMoving, AxesThatStayWrongAreRefused) {
   EXPECT_THROW(feed(60), DataError);
 }
 
+/// Phones have gyroscopes that are off by degrees a second.
+TEST(Alignment, ABiasBeyondItsPriorIsFound) {
+  Sensors sensors = industrial_sensors();
+  sensors.bias.gyro = Vector3d(-0.01, 0.035, 0.068);
+  const DriveSimulator simulator(drive_without_rest(0.8), sensors);
+  const Outcome outcome = align(simulator, sensors, noise_of(sensors, 1e-3, 0.015));
+  ASSERT_TRUE(outcome.initial) << outcome.why_not;
+  const state::NodeVector error =
+      error_of(*outcome.initial, simulator.truth(outcome.initial->t_ns), sensors.bias);
+  EXPECT_LT(state::part(error, gyro_bias).norm(), 5e-3);
+  const double heading =
+      heading_error(*outcome.initial, simulator.truth(outcome.initial->t_ns), sensors.q_v_b);
+  EXPECT_LT(std::abs(heading), 3 * heading_sigma(*outcome.initial));
+}
+
 /// Nothing tells the heading but that most vehicles go along their nose.
 TEST(AlignmentWhileMoving, StraightAndSteadyMotionIsTakenForTheCourse) {
   Sensors sensors = industrial_sensors();

@@ -22,14 +22,14 @@ namespace {
 using simulation::SimulatedSource;
 
 constexpr double kDetermined = 10 * kDegree;
-constexpr double kWell = 1 * kDegree;     // of the bound after 60 s ...
-constexpr double kWithin = 3 * kDegree;   // ... and what is asked of the run then
-constexpr double kWorstSigmas = 4;        // one in 16000
+constexpr double kWell = 1 * kDegree;      // of the bound after 60 s ...
+constexpr double kWithin = 3 * kDegree;    // ... and what is asked of the run then
+constexpr double kWorstSigmas = 4;         // one in 16000
 constexpr double kFirst = 60, kStep = 30;  // [s]
 
 std::string describe(const simulation::RandomStart& start) {
   const simulation::ScenarioOptions& s = start.scenario;
-  const char* const gnss = s.gnss_sigma_m.x() < 0.5 ? "RTK"
+  const char* const gnss = s.gnss_sigma_m.x() < 0.5        ? "RTK"
                            : s.gnss_velocity_sigma_m_s > 0 ? "single with velocity"
                                                            : "single";
   return fmt::format("{}, {} at {:.2g} Hz, {}, {}", s.name, gnss, s.gnss_rate_hz,
@@ -183,7 +183,7 @@ StartOutcome study_start(int64_t seed, const StartProgram& program) {
 evaluation::TextTable start_table(const std::vector<StartOutcome>& outcomes) {
   evaluation::TextTable table;
   table.title = "Starts";
-  table.header = {"seed",        "start",          "bound_60_deg", "bound_120_deg", "right",
+  table.header = {"seed",         "start",        "bound_60_deg", "bound_120_deg", "right",
                   "error_60_deg", "sigma_60_deg", "worst_sigmas", "refusal"};
   for (const StartOutcome& o : outcomes) {
     const bool known = !o.headings.empty();
@@ -224,8 +224,8 @@ evaluation::TextTable start_summary(const std::vector<StartOutcome>& outcomes) {
   }
   evaluation::TextTable table;
   table.title = "Random starts";
-  table.header = {"vehicle", "starts", "determined", "begun", "right", "heading NEES",
-                  "within 4 sigma", "worst"};
+  table.header = {"vehicle", "starts",       "determined",     "begun",
+                  "right",   "heading NEES", "within 4 sigma", "worst"};
   for (const auto& [kind, s] : sums) {
     table.rows.push_back({kind, fmt::format("{}", s.all), fmt::format("{}", s.determined),
                           fmt::format("{}", s.started), fmt::format("{}", s.right),

@@ -17,6 +17,7 @@ std::optional<Start> Aligning::take(const Measurement& measurement) {
 
 std::optional<Start> Aligning::finish() {
   if (std::optional<Start> start = look_through_screen(true)) return start;
+  if (aligner_.initial()) return std::nullopt;
   aligner_.finish();
   if (!aligner_.initial()) return std::nullopt;
   return start();

@@ -104,6 +104,11 @@ struct RecordingSink : state::Sink {
   std::vector<state::Notice> notices;
   std::vector<state::PredictionResult> predictions;
   bool predict = false;
+  std::size_t stop_catching_up_at = 0;  ///< measurements left
+  std::function<void()> stop;
+  void catching_up(std::size_t left) override {
+    if (stop && left == stop_catching_up_at) stop();
+  }
   bool wants_predictions() const override { return predict; }
   void prediction(const state::PredictionResult& p) override { predictions.push_back(p); }
   void epoch(const state::Epoch& e) override { epochs_ms.push_back(ms_of(e.t_ns)); }

@@ -437,6 +437,22 @@ TEST_F(NavigationRunTest, FixesOfLowQualityAreLeftOut) {
   EXPECT_TRUE(log_.updates.empty());
 }
 
+/// What was held back over a hole or an alignment is gone through within one call.
+TEST_F(NavigationRunTest, CanBeStoppedWhileCatchingUp) {
+  align();
+  feed_imu(10, 1000);
+  run().process(increment_between(3000, 3010));  // the course after the hole is waited for
+  sink_.stop_catching_up_at = 5;
+  struct Stopped {};
+  sink_.stop = [] { throw Stopped(); };
+  EXPECT_THROW(
+      {
+        feed_imu(3010, 60000);
+        run().finish();
+      },
+      Stopped);
+}
+
 TEST_F(NavigationRunTest, AFixOfTwoFaultsCountsOnce) {
   options_.gnss.min_quality = "fixed_rtk";
   align();

@@ -44,9 +44,8 @@ struct StartProgram {
   /// A filter for the bound.
   std::function<std::unique_ptr<measurement::Navigator>(const imu::ImuNoise& noise)> filter;
   /// A run with its alignment, for an IMU by preset. Throws DataError if there is no start.
-  std::function<std::unique_ptr<state::Estimator>(const std::string& imu,
-                                                  const state::Mounting& mounting,
-                                                  state::Sink& sink)>
+  std::function<std::unique_ptr<state::Estimator>(
+      const std::string& imu, const state::Mounting& mounting, state::Sink& sink)>
       run;
 };
 
