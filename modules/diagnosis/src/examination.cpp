@@ -46,6 +46,7 @@ FixGuard::Verdict Examination::admit(const GnssFix& given) {
   sigmas_.add(fix.position_covariance);
   if (!options_.allows(fix)) return verdict;
   rest_.add(fix);
+  reference_.add(fix);
   acceleration_.add(fix);
   plausibility_.watch(fix);
   near_.add(fix);
@@ -55,6 +56,7 @@ FixGuard::Verdict Examination::admit(const GnssFix& given) {
 void Examination::add(const Measurement& measurement) {
   if (const auto* increment = std::get_if<ImuIncrement>(&measurement)) admit(*increment);
   if (const auto* fix = std::get_if<GnssFix>(&measurement)) admit(*fix);
+  if (const auto* pose = std::get_if<ReferencePose>(&measurement)) admit(*pose);
 }
 
 LogFacts Examination::facts() const {
@@ -70,6 +72,7 @@ LogFacts Examination::facts() const {
   facts.force = plausibility_.force();
   facts.force.mean = q_v_b_ * facts.force.mean;
   facts.rest = rest_.facts();
+  facts.reference = reference_.facts();
   facts.turns = turns();
   facts.acceleration_match = acceleration_.correlation();
   return facts;

@@ -72,6 +72,31 @@ void judge_overlap(const LogFacts& facts, Judgement& out) {
   out.ok("overlap", text);
 }
 
+/// Receivers gave GPS weeks modulo 1024, and tables still do. Clocks that begin before GPS did
+/// count from their start, or were never set, and mean no date.
+void judge_date(const LogFacts& facts, Judgement& out) {
+  constexpr int64_t kYear2000Ns = 946'684'800 * kNanosecondsPerSecond;
+  constexpr int64_t kRound = 1024;  // weeks
+  const int64_t first_ns = facts.imu.count > 0 ? facts.imu.first_ns : facts.gnss.first_ns;
+  if (first_ns < kGpsEpochNs || first_ns >= kYear2000Ns) return;
+  const int64_t round_ns = kRound * kNanosecondsPerWeek;
+  out.warn("date",
+           fmt::format("the recording is of {}, or of {} or {} if its GPS weeks are modulo 1024",
+                       utc_text(first_ns), utc_text(first_ns + round_ns),
+                       utc_text(first_ns + 2 * round_ns)),
+           "add 1024 or 2048 to the weeks of the import, unless the date is right");
+}
+
+void judge_reference(const LogFacts& facts, Judgement& out) {
+  const ReferenceFacts& reference = facts.reference;
+  if (reference.compared == 0) return;
+  const std::string text = fmt::format("{:.4g} m (RMS) from fixes within half a second, {} poses",
+                                       reference.rms_m, reference.compared);
+  if (2 * reference.far <= reference.compared) return out.ok("reference", text);
+  out.warn("reference", text + "; a run is not compared with it",
+           "correct columns and units of the reference in the import");
+}
+
 void judge_sigmas(const LogFacts& facts, Judgement& out) {
   if (facts.sigmas.bad > 0) {
     out.warn("sigmas",
@@ -224,6 +249,8 @@ std::vector<Finding> judge(const LogFacts& facts, const imu::ImuNoise& configure
   judge_stream(facts.gnss, "GNSS", kGnssHole, out);
   judge_samples(facts, out);
   judge_overlap(facts, out);
+  judge_date(facts, out);
+  judge_reference(facts, out);
   judge_sigmas(facts, out);
   judge_lever_arm(facts, out);
   judge_force(facts, out);

@@ -88,6 +88,24 @@ TEST_F(Complaint, Overlap) {
   EXPECT_THAT(complaints(facts_), HasSubstr("error overlap: IMU and GNSS have no time in common"));
 }
 
+TEST_F(Complaint, WeeksModulo1024) {
+  const int64_t days = 24 * 3600 * kNanosecondsPerSecond;
+  facts_.imu.first_ns = facts_.gnss.first_ns = 5424 * days;  // 1984-11-07
+  facts_.imu.last_ns = facts_.gnss.last_ns = 5424 * days + nanoseconds(100);
+  EXPECT_THAT(complaints(facts_), AllOf(HasSubstr("warning date: the recording is of 1984-11-07"),
+                                        HasSubstr("2004-06-23"), HasSubstr("2024-02-07")));
+  facts_.imu.first_ns = facts_.gnss.first_ns = 11000 * days;  // 2000-02-13
+  facts_.imu.last_ns = facts_.gnss.last_ns = 11000 * days + nanoseconds(100);
+  EXPECT_EQ(complaints(facts_), "");
+}
+
+TEST_F(Complaint, AReferenceOfAnotherPlace) {
+  facts_.reference = {11, 6, 62854};
+  EXPECT_THAT(complaints(facts_), HasSubstr("warning reference: 6.285e+04 m (RMS) from fixes"));
+  facts_.reference = {12, 6, 300};  // some fixes may be wrong
+  EXPECT_EQ(complaints(facts_), "");
+}
+
 TEST_F(Complaint, SamplesAndFixesThatWereLeftOut) {
   facts_.bad_samples = {"3 IMU samples"};
   facts_.bad_fixes = {"4 fixes"};
