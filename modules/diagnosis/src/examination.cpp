@@ -31,6 +31,7 @@ ImuGuard::Verdict Examination::admit(const ImuIncrement& increment) {
   if (imu_guard_.last_end_ns() != before_ns) imu_.add(increment.t_end_ns);
   if (!verdict.increment) return verdict;
   rest_.add(*verdict.increment);
+  commutation_.add(*verdict.increment);
   acceleration_.add(*verdict.increment);
   plausibility_.watch(*verdict.increment);
   near_.add(*verdict.increment);
@@ -72,6 +73,7 @@ LogFacts Examination::facts() const {
   facts.force = plausibility_.force();
   facts.force.mean = q_v_b_ * facts.force.mean;
   facts.rest = rest_.facts();
+  facts.commutation = commutation_.facts();
   facts.reference = reference_.facts();
   facts.turns = turns();
   facts.acceleration_match = acceleration_.correlation();

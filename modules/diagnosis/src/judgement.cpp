@@ -24,6 +24,10 @@ class Judgement {
   void error(const std::string& subject, const std::string& text, const std::string& remedy) {
     findings.push_back({Severity::error, subject, text, remedy});
   }
+  bool has_error() const {
+    return std::any_of(findings.begin(), findings.end(),
+                       [](const Finding& f) { return f.severity == Severity::error; });
+  }
   std::vector<Finding> findings;
 };
 
@@ -169,6 +173,27 @@ void judge_noise(const LogFacts& facts, const imu::ImuNoise& configured, Judgeme
   }
 }
 
+/// Drift that changes is what a bias does by itself; more than that no filter expects.
+/// Where units or axes are wrong, rates are none.
+void judge_rate(const LogFacts& facts, const imu::ImuNoise& configured, Judgement& out) {
+  constexpr double kSeveral = 3;
+  const CommutationFacts& c = facts.commutation;
+  if (c.seconds == 0 || out.has_error()) return;
+  const std::string text = fmt::format(
+      "rotations between samples cost {:.2g} deg/h and {:.2g} deg/sqrt(h) at least (the gyroscopes "
+      "have {:.2g} and {:.2g}), one every {:.4g} s",
+      c.drift / kDegree * 3600, c.random / kDegree * 60,
+      configured.gyro_bias_sigma / kDegree * 3600, configured.gyro_noise_density / kDegree * 60,
+      facts.imu.interval_s);
+  const bool drifts = c.drift > kSeveral * configured.gyro_bias_sigma;
+  if (drifts || c.random > kSeveral * configured.gyro_noise_density) {
+    return out.warn("IMU rate", text,
+                    "record the IMU faster or damp its vibration; attitude is worse than its "
+                    "sigmas say");
+  }
+  out.ok("IMU rate", text);
+}
+
 void judge_force(const LogFacts& facts, Judgement& out) {
   if (facts.imu.count == 0) return;
   if (const std::optional<WrongForce> wrong = wrong_force(facts.force)) {
@@ -257,6 +282,7 @@ std::vector<Finding> judge(const LogFacts& facts, const imu::ImuNoise& configure
   judge_axes(facts, out);
   judge_turns(facts, out);
   judge_noise(facts, configured, out);
+  judge_rate(facts, configured, out);
   return out.findings;
 }
 

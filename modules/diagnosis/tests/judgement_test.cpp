@@ -145,6 +145,18 @@ TEST_F(Complaint, Force) {
   EXPECT_EQ(complaints(facts_), "");
 }
 
+TEST_F(Complaint, ARateThatIsTooLow) {
+  facts_.commutation = {100, 1e-6, 1e-6};
+  EXPECT_EQ(complaints(facts_), "");
+  facts_.commutation.drift = 4e-5;  // 8 deg/h, of 2
+  EXPECT_THAT(complaints(facts_),
+              HasSubstr("warning IMU rate: rotations between samples cost 8.3"));
+  facts_.commutation = {100, 0, 2e-4};
+  EXPECT_THAT(complaints(facts_), HasSubstr("warning IMU rate"));
+  facts_.force.factor->value = 0.5;  // of which rates are no rates either
+  EXPECT_THAT(complaints(facts_), ::testing::Not(HasSubstr("IMU rate")));
+}
+
 TEST_F(Complaint, Axes) {
   facts_.acceleration_match = Eigen::Vector2d(-0.8, 0);
   EXPECT_THAT(complaints(facts_), HasSubstr("forward is backward"));

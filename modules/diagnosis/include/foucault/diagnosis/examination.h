@@ -60,6 +60,7 @@ class Examination {
   SigmaFacts sigmas_;
   std::optional<double> lever_arm_;
   RestWatch rest_;
+  CommutationWatch commutation_;
   ReferenceWatch reference_;
   AccelerationMatch acceleration_;
   Plausibility plausibility_;
