@@ -304,8 +304,10 @@ class SigmaColumns {
 
   Eigen::Matrix3d covariance(const Row& row) const {
     if (!columns_) return constant_.cwiseAbs2().asDiagonal();
-    const Eigen::Vector3d sigma(row.sigma((*columns_)[0]), row.sigma((*columns_)[1]),
-                                row.sigma((*columns_)[2]));
+    Eigen::Vector3d sigma;
+    for (size_t i = 0; i < 3; ++i) {
+      sigma[static_cast<int>(i)] = row.sigma((*columns_)[i], "gnss.sigma_m");
+    }
     return sigma.cwiseAbs2().asDiagonal();
   }
 
@@ -353,7 +355,7 @@ class GnssVelocity {
 
   Eigen::Vector3d sigma(const Row& row) const {
     if (!sigma_column_) return sigma_;
-    const double sigma = row.sigma(*sigma_column_);
+    const double sigma = row.sigma(*sigma_column_, "gnss.velocity_sigma_m_s");
     return {sigma, sigma, speed_ ? kOpenVerticalSigma : sigma};
   }
 

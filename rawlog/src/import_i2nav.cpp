@@ -124,8 +124,8 @@ class I2navImu : public RecordReader {
       nominal_ns_ = interval_ns;
       put(*last_, interval_ns);
     }
-    // Samples are missing: what this one covers is one interval, the rest is a hole.
-    const bool hole = is_hole(interval_ns, nominal_ns_);
+    // Samples are missing, or the one before was wrong: what this one covers is one interval.
+    const bool hole = interval_ns <= 0 || is_hole(interval_ns, nominal_ns_);
     if (!hole) nominal_ns_ = interval_ns;
     put(sample, nominal_ns_);
     last_ = sample;

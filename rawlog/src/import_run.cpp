@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <deque>
 #include <filesystem>
 #include <vector>
 
@@ -16,22 +17,25 @@ namespace foucault::rawlog {
 
 namespace {
 
-/// An input with the record that comes next, its bad rows dealt with.
+/// An input with the records that come next, its bad rows dealt with. Behind a jump of the stamps
+/// some wait: the rows that follow tell whether there is a hole, or the stamps were wrong.
 class Input {
  public:
   Input(std::unique_ptr<RecordReader> reader, bool skip_bad_rows)
       : reader_(std::move(reader)), skip_bad_rows_(skip_bad_rows) {
     summary_.file = reader_->table().path();
-    advance();
+    fill();
   }
 
-  const std::optional<Record>& head() const { return head_; }
+  /// Null at the end.
+  const Record* head() const { return ahead_.empty() ? nullptr : &ahead_.front().record; }
   double progress() const { return reader_->table().progress(); }
 
   Record take() {
-    Record record = std::move(*head_);
+    Record record = std::move(ahead_.front().record);
+    ahead_.pop_front();
     if (!std::holds_alternative<WheelSpeed>(record)) count(stamp(record));
-    advance();
+    fill();
     return record;
   }
 
@@ -42,18 +46,50 @@ class Input {
   }
 
  private:
-  void advance() {
-    while (true) {
+  struct Ahead {
+    Record record;
+    int64_t line = 0;
+  };
+
+  void fill() {
+    while (!over_ && (ahead_.empty() || (since_jump_ && ahead_.size() <= kMostRowsAhead))) {
       try {
-        head_ = reader_->next();
-        return;
+        read_one();
       } catch (const RowError& error) {
-        if (!skip_bad_rows_) {
-          throw DataError(fmt::format("{}, or skip bad rows (--skip-bad-rows)", error.what()));
-        }
-        if (summary_.skipped++ == 0) summary_.first_skipped = error.what();
+        skip(error.what());
       }
     }
+  }
+
+  void read_one() {
+    std::optional<Record> record = reader_->next();
+    over_ = !record;
+    if (over_) return;
+    const int64_t t_ns = stamp(*record);
+    while (!ahead_.empty() && stamp(ahead_.back().record) > t_ns) skip_last(t_ns);
+    if (newest_ns_ && StampOrder::is_jump(*newest_ns_, t_ns)) {
+      since_jump_ = 0;
+    } else if (since_jump_ && ++*since_jump_ > kMostRowsAhead) {
+      since_jump_.reset();
+    }
+    newest_ns_ = t_ns;
+    ahead_.push_back({std::move(*record), reader_->table().line()});
+  }
+
+  /// Of a record whose stamp lies ahead of one that follows.
+  void skip_last(int64_t follows_ns) {
+    const Ahead last = std::move(ahead_.back());
+    ahead_.pop_back();
+    if (std::holds_alternative<WheelSpeed>(last.record)) return;  // its row has another record
+    skip(
+        fmt::format("{}:{}: the stamp {} lies ahead of one that follows, {}; correct or remove "
+                    "the row",
+                    summary_.file, last.line, utc_text(stamp(last.record)), utc_text(follows_ns)));
+  }
+
+  void skip(const std::string& why) {
+    if (!skip_bad_rows_) throw DataError(why + ", or skip bad rows (--skip-bad-rows)");
+    if (summary_.skipped++ == 0) summary_.first_skipped = why;
   }
 
   void count(int64_t t_ns) {
@@ -63,7 +99,10 @@ class Input {
 
   std::unique_ptr<RecordReader> reader_;
   bool skip_bad_rows_;
-  std::optional<Record> head_;
+  bool over_ = false;
+  std::deque<Ahead> ahead_;
+  std::optional<int64_t> newest_ns_;
+  std::optional<int> since_jump_;  ///< rows
   ImportStream summary_;
 };
 
@@ -100,7 +139,7 @@ Input* earliest(Input& imu, Input& gnss, std::optional<Input>& reference) {
   Input* first = nullptr;
   const std::array<Input*, 3> inputs{&gnss, reference ? &*reference : nullptr, &imu};
   for (Input* input : inputs) {
-    if (input == nullptr || !input->head()) continue;
+    if (input == nullptr || input->head() == nullptr) continue;
     if (first == nullptr || stamp(*input->head()) < stamp(*first->head())) first = input;
   }
   return first;
@@ -149,11 +188,24 @@ void check_not_an_input(const std::string& out, const ImportInputs& inputs) {
 
 void StampOrder::check(const Row& row, int64_t t_ns, bool may_equal) {
   const bool equal = last_ns_ && t_ns == *last_ns_;
-  if (last_ns_ && t_ns <= *last_ns_ && !(equal && may_equal)) {
+  const bool follows = !last_ns_ || t_ns > *last_ns_ || (equal && may_equal);
+  const bool goes_on = before_jump_ns_ && !equal && t_ns > *before_jump_ns_;
+  if (!follows && !goes_on) {
     row.fail(
         fmt::format("the stamp {} does not come after the one before it, {}; sort the file "
                     "by time and remove repeated rows",
                     utc_text(t_ns), utc_text(*last_ns_)));
+  }
+  if (!follows) before_jump_ns_.reset();
+  follow(t_ns);
+}
+
+void StampOrder::follow(int64_t t_ns) {
+  if (last_ns_ && is_jump(*last_ns_, t_ns)) {
+    before_jump_ns_ = last_ns_;
+    since_jump_ = 0;
+  } else if (++since_jump_ > kMostRowsAhead) {
+    before_jump_ns_.reset();
   }
   last_ns_ = t_ns;
 }

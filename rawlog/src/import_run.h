@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "foucault/core/time.h"
 #include "foucault/rawlog/import.h"
 #include "foucault/rawlog/rawlog_writer.h"
 #include "foucault/state/interfaces.h"
@@ -21,13 +22,25 @@ class RecordReader {
   virtual int64_t without_fix() const { return 0; }
 };
 
-/// Stamps of a stream: each after the one before, or at the same time if `may_equal`.
+/// Rows that a stamp far ahead may have in a row, if it is wrong; more are a hole before them.
+inline constexpr int kMostRowsAhead = 100;
+
+/// Stamps of a stream: each after the one before, or at the same time if `may_equal`. One that goes
+/// on from before a jump of the last rows is right, and they were wrong: who takes the rows leaves
+/// them out.
 class StampOrder {
  public:
   void check(const Row& row, int64_t t_ns, bool may_equal = false);
+  static bool is_jump(int64_t from_ns, int64_t to_ns) {
+    return to_ns - from_ns > kNanosecondsPerSecond;
+  }
 
  private:
+  void follow(int64_t t_ns);
+
   std::optional<int64_t> last_ns_;
+  std::optional<int64_t> before_jump_ns_;
+  int since_jump_ = 0;  ///< rows
 };
 
 /// The inputs of an import, ready to be read.

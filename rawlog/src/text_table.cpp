@@ -93,15 +93,17 @@ int64_t Row::scaled(size_t column, int decimals) const {
   return std::strtoll(digits.c_str(), nullptr, 10);
 }
 
-double Row::sigma(size_t column) const {
+double Row::sigma(size_t column, const std::string& constant) const {
   const double value = number(column);
-  if (!(value > 0)) {
-    fail(
-        fmt::format("the sigma in column {} is {}, it must be greater than zero; correct or "
-                    "remove the row",
-                    column + 1, text(column)));
-  }
-  return value;
+  if (value > 0) return value;
+  const std::string unknown =
+      value == 0 && !constant.empty()
+          ? fmt::format("; if zero means unknown, leave the columns out and give {}", constant)
+          : "";
+  fail(
+      fmt::format("the sigma in column {} is {}, it must be greater than zero; correct or "
+                  "remove the row{}",
+                  column + 1, text(column), unknown));
 }
 
 void Row::fail(const std::string& what) const {

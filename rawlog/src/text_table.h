@@ -31,8 +31,9 @@ class Row {
   int64_t integer(size_t column) const;
   /// A decimal number times 10^decimals, exact: seconds as nanoseconds with 9. Throws RowError.
   int64_t scaled(size_t column, int decimals) const;
-  /// A finite number greater than zero. Throws RowError.
-  double sigma(size_t column) const;
+  /// A finite number greater than zero. Throws RowError; of a zero it says that `constant` may be
+  /// given instead of columns, if that is a key.
+  double sigma(size_t column, const std::string& constant = {}) const;
   /// Throws a RowError "file:line: what".
   [[noreturn]] void fail(const std::string& what) const;
 

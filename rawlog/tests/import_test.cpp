@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 #include <zlib.h>
 
+#include <functional>
+
 #include "foucault/core/constants.h"
 #include "foucault/core/so3.h"
 #include "foucault/core/time.h"
@@ -410,6 +412,57 @@ TEST_F(Csv, BadRows) {
   EXPECT_THAT(error<DataError>(std::string(kImu) + kGnss), HasSubstr("imu.csv:5: column 5 is ''"));
   options_.skip_bad_rows = true;
   EXPECT_EQ(run(std::string(kImu) + kGnss).imu.skipped, 1);
+}
+
+TEST_F(Csv, ZeroSigmasNameTheKeyForUnknownOnes) {
+  scratch_.text_file("gnss.csv", "week,sow,lat,lon,h,s,v\n2200,100.01,47,8,400,0,1\n");
+  std::string columns = kGnss;
+  columns.replace(columns.find("height: h"), 9,
+                  "height: h, sigma_horizontal: s, sigma_vertical: v");
+  EXPECT_THAT(error<DataError>(kImu + columns),
+              AllOf(HasSubstr("gnss.csv:2: the sigma in column 6 is 0"),
+                    HasSubstr("leave the columns out and give gnss.sigma_m")));
+}
+
+/// A thousand rows at 100 Hz, some of them stamped ahead.
+class StampedAhead : public Csv {
+ protected:
+  void table(const std::function<double(int)>& ahead_s) {
+    std::string text = "week,sow,gx,gy,gz,ax,ay,az\n";
+    for (int i = 0; i < 1000; ++i) {
+      text += fmt::format("2200,{:.2f},1,{},3,0.1,0.2,1.0\n", 100 + 0.01 * i + ahead_s(i), i);
+    }
+    scratch_.text_file("imu.csv", text);
+    scratch_.text_file("gnss.csv", "week,sow,lat,lon,h\n2200,101,47,8,400\n");
+  }
+  const std::string mapping_ = std::string(kImu) + kGnss;
+};
+
+TEST_F(StampedAhead, RowsAreLeftOutAndNotThoseBehindThem) {
+  const auto ahead = [](int i) { return i >= 500 && i < 503 ? 3600.0 : 0.0; };
+  table(ahead);
+  EXPECT_THAT(error<DataError>(mapping_), HasSubstr("imu.csv:504: the stamp 2022-03-06T01:01:27.02"
+                                                    "0Z lies ahead of one that follows"));
+  options_.skip_bad_rows = true;
+  const ImportSummary summary = run(mapping_);
+  EXPECT_EQ(summary.imu.skipped, 3);
+  EXPECT_EQ(summary.imu.written, 997);
+  EXPECT_EQ(summary.imu.last_ns, gps_to_unix_ns(2200, 109.99));
+}
+
+TEST_F(StampedAhead, AHoleIsAHole) {
+  table([](int i) { return i >= 500 ? 30.0 : 0.0; });
+  const ImportSummary summary = run(mapping_);
+  EXPECT_EQ(summary.imu.written, 1000);
+  EXPECT_EQ(summary.imu.last_ns, gps_to_unix_ns(2200, 139.99));
+}
+
+TEST_F(StampedAhead, ALateRowIsTheOneThatIsLeftOut) {
+  table([](int i) { return i == 500 ? -2.0 : 0.0; });
+  options_.skip_bad_rows = true;
+  const ImportSummary summary = run(mapping_);
+  EXPECT_EQ(summary.imu.skipped, 1);
+  EXPECT_THAT(summary.imu.first_skipped, HasSubstr("does not come after the one before it"));
 }
 
 TEST_F(Csv, DataFolderAndSingleFilesOfTheCommandLineWin) {

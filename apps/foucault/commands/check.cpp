@@ -68,8 +68,9 @@ std::function<void(Call&)> declare_check(CLI::App& app) {
   app.add_option("LOG", options->log, "Rawlog to judge")->required();
   add_config_options(app, options->config, settings_help);
   app.footer(
-      "\nWhat is looked at: rates and holes, overlap, sigmas of fixes, lever arm, units and axes,\n"
-      "the time offset between IMU and GNSS, noise and bias of the IMU at rest against imu.*.\n"
+      "\nWhat is looked at: rates and holes, overlap, the date, where a reference lies, sigmas of\n"
+      "fixes, lever arm, units and axes, the time offset between IMU and GNSS, noise and bias of\n"
+      "the IMU at rest against imu.*, and what is lost by rotations between its samples.\n"
       "Exit code 1 if something must be mended before the log is processed.");
   return [options](Call& call) {
     Settings settings;

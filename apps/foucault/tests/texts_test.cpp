@@ -120,6 +120,10 @@ TEST(RunText, ForProgramsAndForPeople) {
   EXPECT_THAT(metrics_lines(bare), Contains(HasSubstr("north / east / down -")));
   EXPECT_THAT(metrics_lines(bare), Contains(AllOf(HasSubstr("reference"), Not(HasSubstr("roll")))));
   EXPECT_FALSE(nlohmann::json::parse(metrics_json(bare)).contains("damage"));
+  bare.metrics.reference.reset();
+  bare.metrics.reference_elsewhere_m = 62854;
+  EXPECT_THAT(metrics_lines(bare), Contains(HasSubstr("of another place, 62.85 km away")));
+  EXPECT_EQ(nlohmann::json::parse(metrics_json(bare))["reference_elsewhere_m"], 62854);
 }
 
 TEST(RunText, Verdicts) {

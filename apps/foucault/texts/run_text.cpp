@@ -80,6 +80,9 @@ std::vector<std::string> metrics_lines(const RunResult& result) {
     lines.push_back(fmt::format("reference  RMS error horizontal {:.3f} m, vertical {:.3f} m{}",
                                 m.reference->horizontal_rmse, m.reference->vertical_rmse,
                                 attitude_text(*m.reference)));
+  } else if (m.reference_elsewhere_m) {
+    lines.push_back(fmt::format("reference  of another place, {:.4g} km away (RMS); not compared",
+                                *m.reference_elsewhere_m / 1000));
   }
   lines.push_back(fmt::format("resources  {:.1f} s wall, {:.1f} s CPU, {:.0f} MB",
                               result.resources.wall_s, result.resources.cpu_s,

@@ -31,6 +31,7 @@ ImuGuard::Verdict Examination::admit(const ImuIncrement& increment) {
   if (imu_guard_.last_end_ns() != before_ns) imu_.add(increment.t_end_ns);
   if (!verdict.increment) return verdict;
   rest_.add(*verdict.increment);
+  commutation_.add(*verdict.increment);
   acceleration_.add(*verdict.increment);
   plausibility_.watch(*verdict.increment);
   near_.add(*verdict.increment);
@@ -46,6 +47,7 @@ FixGuard::Verdict Examination::admit(const GnssFix& given) {
   sigmas_.add(fix.position_covariance);
   if (!options_.allows(fix)) return verdict;
   rest_.add(fix);
+  reference_.add(fix);
   acceleration_.add(fix);
   plausibility_.watch(fix);
   near_.add(fix);
@@ -55,6 +57,7 @@ FixGuard::Verdict Examination::admit(const GnssFix& given) {
 void Examination::add(const Measurement& measurement) {
   if (const auto* increment = std::get_if<ImuIncrement>(&measurement)) admit(*increment);
   if (const auto* fix = std::get_if<GnssFix>(&measurement)) admit(*fix);
+  if (const auto* pose = std::get_if<ReferencePose>(&measurement)) admit(*pose);
 }
 
 LogFacts Examination::facts() const {
@@ -70,6 +73,8 @@ LogFacts Examination::facts() const {
   facts.force = plausibility_.force();
   facts.force.mean = q_v_b_ * facts.force.mean;
   facts.rest = rest_.facts();
+  facts.commutation = commutation_.facts();
+  facts.reference = reference_.facts();
   facts.turns = turns();
   facts.acceleration_match = acceleration_.correlation();
   return facts;

@@ -50,6 +50,7 @@ bool velocity_is_valid(const GnssFix& fix) {
 
 FixGuard::Verdict FixGuard::look_at(const GnssFix& fix) {
   Verdict verdict;
+  ++seen_;
   if (!is_position(fix.antenna) || !fix.p_b_a.allFinite()) {
     no_position_.add(fix.t_ns);
     return verdict;
@@ -140,9 +141,12 @@ std::vector<std::string> FixGuard::summary() const {
       "are no positions (latitude and longitude zero, not finite, or out of range) and were left "
       "out");
   add(out_of_reach_, "lie where no vehicle gets to from the others and were left out");
-  add(held_,
-      "repeat the position before them under a new stamp; the first of each counts, the repeats "
-      "were left out");
+  if (held_.count > 0) {
+    lines.push_back(
+        fmt::format("{} of {} fixes repeat the position before them under a new stamp; the first "
+                    "of each counts, the repeats were left out, the first at {}",
+                    held_.count, seen_, utc_text(held_.first_ns)));
+  }
   add(bad_velocity_, "have a velocity or a sigma of it that is no number; it is not used");
   return lines;
 }

@@ -24,6 +24,10 @@ class Judgement {
   void error(const std::string& subject, const std::string& text, const std::string& remedy) {
     findings.push_back({Severity::error, subject, text, remedy});
   }
+  bool has_error() const {
+    return std::any_of(findings.begin(), findings.end(),
+                       [](const Finding& f) { return f.severity == Severity::error; });
+  }
   std::vector<Finding> findings;
 };
 
@@ -70,6 +74,31 @@ void judge_overlap(const LogFacts& facts, Judgement& out) {
     return out.warn("overlap", text, "GNSS begins " + describe_mismatch(later));
   }
   out.ok("overlap", text);
+}
+
+/// Receivers gave GPS weeks modulo 1024, and tables still do. Clocks that begin before GPS did
+/// count from their start, or were never set, and mean no date.
+void judge_date(const LogFacts& facts, Judgement& out) {
+  constexpr int64_t kYear2000Ns = 946'684'800 * kNanosecondsPerSecond;
+  constexpr int64_t kRound = 1024;  // weeks
+  const int64_t first_ns = facts.imu.count > 0 ? facts.imu.first_ns : facts.gnss.first_ns;
+  if (first_ns < kGpsEpochNs || first_ns >= kYear2000Ns) return;
+  const int64_t round_ns = kRound * kNanosecondsPerWeek;
+  out.warn("date",
+           fmt::format("the recording is of {}, or of {} or {} if its GPS weeks are modulo 1024",
+                       utc_text(first_ns), utc_text(first_ns + round_ns),
+                       utc_text(first_ns + 2 * round_ns)),
+           "add 1024 or 2048 to the weeks of the import, unless the date is right");
+}
+
+void judge_reference(const LogFacts& facts, Judgement& out) {
+  const ReferenceFacts& reference = facts.reference;
+  if (reference.compared == 0) return;
+  const std::string text = fmt::format("{:.4g} m (RMS) from fixes within half a second, {} poses",
+                                       reference.rms_m, reference.compared);
+  if (2 * reference.far <= reference.compared) return out.ok("reference", text);
+  out.warn("reference", text + "; a run is not compared with it",
+           "correct columns and units of the reference in the import");
 }
 
 void judge_sigmas(const LogFacts& facts, Judgement& out) {
@@ -142,6 +171,27 @@ void judge_noise(const LogFacts& facts, const imu::ImuNoise& configured, Judgeme
   } else {
     out.ok("gyroscope bias", bias);
   }
+}
+
+/// Drift that changes is what a bias does by itself; more than that no filter expects.
+/// Where units or axes are wrong, rates are none.
+void judge_rate(const LogFacts& facts, const imu::ImuNoise& configured, Judgement& out) {
+  constexpr double kSeveral = 3;
+  const CommutationFacts& c = facts.commutation;
+  if (c.seconds == 0 || out.has_error()) return;
+  const std::string text = fmt::format(
+      "rotations between samples cost {:.2g} deg/h and {:.2g} deg/sqrt(h) at least (the gyroscopes "
+      "have {:.2g} and {:.2g}), one every {:.4g} s",
+      c.drift / kDegree * 3600, c.random / kDegree * 60,
+      configured.gyro_bias_sigma / kDegree * 3600, configured.gyro_noise_density / kDegree * 60,
+      facts.imu.interval_s);
+  const bool drifts = c.drift > kSeveral * configured.gyro_bias_sigma;
+  if (drifts || c.random > kSeveral * configured.gyro_noise_density) {
+    return out.warn("IMU rate", text,
+                    "record the IMU faster or damp its vibration; attitude is worse than its "
+                    "sigmas say");
+  }
+  out.ok("IMU rate", text);
 }
 
 void judge_force(const LogFacts& facts, Judgement& out) {
@@ -224,12 +274,15 @@ std::vector<Finding> judge(const LogFacts& facts, const imu::ImuNoise& configure
   judge_stream(facts.gnss, "GNSS", kGnssHole, out);
   judge_samples(facts, out);
   judge_overlap(facts, out);
+  judge_date(facts, out);
+  judge_reference(facts, out);
   judge_sigmas(facts, out);
   judge_lever_arm(facts, out);
   judge_force(facts, out);
   judge_axes(facts, out);
   judge_turns(facts, out);
   judge_noise(facts, configured, out);
+  judge_rate(facts, configured, out);
   return out.findings;
 }
 

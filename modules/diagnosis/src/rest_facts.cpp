@@ -1,7 +1,9 @@
 #include "foucault/diagnosis/rest_facts.h"
 
 #include <algorithm>
+#include <optional>
 
+#include "foucault/core/time.h"
 #include "foucault/geodesy/course.h"
 #include "foucault/geodesy/local_frame.h"
 
@@ -9,11 +11,17 @@ namespace foucault::diagnosis {
 namespace {
 
 // Chosen: means over a second of the noisiest consumer IMUs (MPU-6050: 0.005 deg/s and 0.004 m/s^2)
-// are far below, those of manoeuvres above; sigmas of fixes may be too small by a factor of some.
+// are far below, those of manoeuvres above.
 constexpr std::size_t kSeconds = 4;
 constexpr double kSteadyGyro = 0.005;  // [rad/s]
 constexpr double kSteadyAccel = 0.1;   // [m/s^2]
-constexpr double kMoving = 15;         // times the scatter that sigmas promise
+// Chosen: fixes of 5 m at 1 Hz show a walk within 20 s.
+constexpr std::size_t kLongestStretch = 30;  // [s]
+constexpr double kWalk = 1;                  // [m/s]
+// Both axes within: all but three in ten thousand at rest.
+constexpr double kSigmas = 4;
+// Errors of receivers wander as slowly, with the times of satellites and reflections.
+constexpr double kWander = 0.1;  // [m/s]
 
 }  // namespace
 
@@ -29,47 +37,79 @@ void RestWatch::add(const ImuIncrement& increment) {
 }
 
 void RestWatch::add(const GnssFix& fix) {
-  const double sigma = geodesy::horizontal_sigma(fix.position_covariance);
-  if (!(sigma > 0)) return;
-  if (last_fix_) {
-    const geodesy::LocalFrame frame(last_fix_->antenna);
-    const double way = frame.to_local(fix.antenna).head<2>().norm();
-    last_scatter_ = way / sigma / 2;  // two fixes, two axes
-    pending_scatter_.push_back(last_scatter_);
-  }
-  last_fix_ = fix;
+  if (geodesy::horizontal_sigma(fix.position_covariance) > 0) fixes_.push_back(fix);
 }
 
 void RestWatch::end_second() {
   seconds_.push_back(second_);
   if (seconds_.size() > kSeconds) seconds_.pop_front();
-  if (is_still()) {
-    take();
+  if (is_steady()) {
+    lengthen();
   } else {
-    for (AllanWatch& allan : allan_) allan.interrupt();
+    end_stretch();
+    goes_on_ = false;
   }
-  pending_scatter_.clear();
+  if (stretch_.seconds.size() == kLongestStretch) end_stretch();
+  if (!fixes_.empty()) fixes_.erase(fixes_.begin(), fixes_.end() - 1);
 }
 
-bool RestWatch::is_still() const {
+bool RestWatch::is_steady() const {
   const auto agrees = [this](const Second& before) {
     return (before.gyro - second_.gyro).cwiseAbs().maxCoeff() < kSteadyGyro &&
            (before.accel - second_.accel).cwiseAbs().maxCoeff() < kSteadyAccel;
   };
-  return seconds_.size() == kSeconds && std::all_of(seconds_.begin(), seconds_.end(), agrees) &&
-         last_scatter_ < kMoving;
+  return seconds_.size() == kSeconds && std::all_of(seconds_.begin(), seconds_.end(), agrees);
 }
 
-void RestWatch::take() {
+void RestWatch::lengthen() {
+  stretch_.seconds.push_back(second_);
+  for (std::size_t i = 1; i < fixes_.size(); ++i) {
+    const GnssFix &a = fixes_[i - 1], &b = fixes_[i];
+    const double sigma = geodesy::horizontal_sigma(b.position_covariance);
+    stretch_.way.add(b, sigma);
+    const geodesy::LocalFrame frame(a.antenna);
+    stretch_.steps.push_back(
+        {frame.to_local(b.antenna).head<2>(), seconds_between(a.t_ns, b.t_ns), sigma});
+  }
+}
+
+/// What follows on rest needs not show it by itself, as long as it does not show motion.
+void RestWatch::end_stretch() {
+  const std::optional<SteadyWay::Velocity> velocity = stretch_.way.velocity();
+  const double sigmas = velocity ? kSigmas * velocity->sigma : 0;
+  const bool rests = velocity && velocity->mean.norm() <= std::max(kWander, sigmas) &&
+                     (sigmas < kWalk || goes_on_);
+  if (!rests || !goes_on_) {
+    for (AllanWatch& allan : allan_) allan.interrupt();
+  }
+  if (rests) take(*velocity);
+  goes_on_ = rests;
+  stretch_ = Stretch();
+}
+
+void RestWatch::take(const SteadyWay::Velocity& velocity) {
+  for (const Second& second : stretch_.seconds) take(second);
+  for (const Step& step : stretch_.steps) {
+    const double left = (step.way - step.time * velocity.mean).norm();
+    scatter_.add(left / step.sigma / 2);  // two fixes, two axes
+  }
+}
+
+void RestWatch::take(const Second& second) {
   ++still_;
-  gyro_sum_ += second_.gyro;
+  gyro_sum_ += second.gyro;
   AllanWatch::Vector6d mean;
-  mean << second_.gyro, second_.accel;
+  mean << second.gyro, second.accel;
   for (AllanWatch& allan : allan_) allan.add(mean);
-  for (const double scatter : pending_scatter_) scatter_.add(scatter);
 }
 
 RestFacts RestWatch::facts() const {
+  RestWatch all = *this;
+  all.end_stretch();
+  return all.taken();
+}
+
+RestFacts RestWatch::taken() const {
   RestFacts facts;
   facts.seconds = still_;
   AllanWatch::Vector6d density = allan_[0].density();

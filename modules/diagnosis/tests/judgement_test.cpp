@@ -88,6 +88,24 @@ TEST_F(Complaint, Overlap) {
   EXPECT_THAT(complaints(facts_), HasSubstr("error overlap: IMU and GNSS have no time in common"));
 }
 
+TEST_F(Complaint, WeeksModulo1024) {
+  const int64_t days = 24 * 3600 * kNanosecondsPerSecond;
+  facts_.imu.first_ns = facts_.gnss.first_ns = 5424 * days;  // 1984-11-07
+  facts_.imu.last_ns = facts_.gnss.last_ns = 5424 * days + nanoseconds(100);
+  EXPECT_THAT(complaints(facts_), AllOf(HasSubstr("warning date: the recording is of 1984-11-07"),
+                                        HasSubstr("2004-06-23"), HasSubstr("2024-02-07")));
+  facts_.imu.first_ns = facts_.gnss.first_ns = 11000 * days;  // 2000-02-13
+  facts_.imu.last_ns = facts_.gnss.last_ns = 11000 * days + nanoseconds(100);
+  EXPECT_EQ(complaints(facts_), "");
+}
+
+TEST_F(Complaint, AReferenceOfAnotherPlace) {
+  facts_.reference = {11, 6, 62854};
+  EXPECT_THAT(complaints(facts_), HasSubstr("warning reference: 6.285e+04 m (RMS) from fixes"));
+  facts_.reference = {12, 6, 300};  // some fixes may be wrong
+  EXPECT_EQ(complaints(facts_), "");
+}
+
 TEST_F(Complaint, SamplesAndFixesThatWereLeftOut) {
   facts_.bad_samples = {"3 IMU samples"};
   facts_.bad_fixes = {"4 fixes"};
@@ -125,6 +143,18 @@ TEST_F(Complaint, Force) {
   EXPECT_THAT(complaints(facts_), HasSubstr("error gravity:"));
   facts_.force.mean.z() = 2;  // rolls and loops have no up
   EXPECT_EQ(complaints(facts_), "");
+}
+
+TEST_F(Complaint, ARateThatIsTooLow) {
+  facts_.commutation = {100, 1e-6, 1e-6};
+  EXPECT_EQ(complaints(facts_), "");
+  facts_.commutation.drift = 4e-5;  // 8 deg/h, of 2
+  EXPECT_THAT(complaints(facts_),
+              HasSubstr("warning IMU rate: rotations between samples cost 8.3"));
+  facts_.commutation = {100, 0, 2e-4};
+  EXPECT_THAT(complaints(facts_), HasSubstr("warning IMU rate"));
+  facts_.force.factor->value = 0.5;  // of which rates are no rates either
+  EXPECT_THAT(complaints(facts_), ::testing::Not(HasSubstr("IMU rate")));
 }
 
 TEST_F(Complaint, Axes) {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <random>
 
 #include "level_drive.h"
@@ -50,6 +52,57 @@ TEST(RestWatch, AMovingVehicleIsNotAtRest) {
   RestWatch winding_watch;
   winding().feed(winding_watch);
   EXPECT_EQ(winding_watch.facts().seconds, 0);
+}
+
+/// Honest sigmas against which the way from a fix to the next is short: 14 m/s at 10 Hz, with 0.06
+/// and 1.5 m. Scatter about a mean is not a way that grows.
+TEST(RestWatch, ASteadyDriveIsNoRestHoweverLargeTheSigmas) {
+  for (const double sigma : {0.06, 0.3, 1.5}) {
+    for (const double interval : {0.1, 0.2, 1.0}) {
+      LevelDrive drive;
+      drive.speed = [](double) { return 14.0; };
+      drive.seconds = 100;
+      drive.fix_sigma = sigma;
+      drive.fix_interval = interval;
+      RestWatch watch;
+      drive.feed(watch);
+      EXPECT_EQ(watch.facts().seconds, 0) << sigma << " m, " << interval << " s";
+    }
+  }
+}
+
+/// Between drives, told by fixes of 1.5 m: nothing but the rest, and all of it.
+TEST(RestWatch, AStopAmidADrive) {
+  LevelDrive drive;
+  drive.speed = [](double t) { return 10 * std::max(0.0, std::abs(t - 60) / 20 - 1); };
+  drive.seconds = 120;
+  drive.fix_sigma = 1.5;
+  RestWatch watch;
+  drive.feed(watch);
+  EXPECT_NEAR(watch.facts().seconds, 37, 2);       // of 40, three to know it
+  EXPECT_NEAR(watch.facts().fix_scatter, 1, 0.6);  // of some 35 values: three sigmas
+}
+
+/// Sigmas that are too small by 14 do not hide that it rests, and show.
+TEST(RestWatch, FixesThatScatterMoreThanTheySayStillRest) {
+  LevelDrive drive = standing(0.28, 200);
+  RestWatch watch;
+  for (Measurement& m : drive.measurements()) {
+    if (auto* fix = std::get_if<GnssFix>(&m)) {
+      fix->position_covariance /= 14 * 14;
+      watch.add(*fix);
+    }
+    if (const auto* increment = std::get_if<ImuIncrement>(&m)) watch.add(*increment);
+  }
+  EXPECT_GT(watch.facts().seconds, 150);
+  EXPECT_NEAR(watch.facts().fix_scatter, 14, 3);
+}
+
+/// Fixes that would not show a walk do not show rest.
+TEST(RestWatch, CoarseFixesTellNoShortRest) {
+  RestWatch watch;
+  standing(10, 12).feed(watch);
+  EXPECT_EQ(watch.facts().seconds, 0);
 }
 
 TEST(RestWatch, WithoutFixesOrSigmasThereIsNoRest) {

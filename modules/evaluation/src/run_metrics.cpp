@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "foucault/core/elsewhere.h"
 #include "foucault/core/so3.h"
 #include "foucault/core/time.h"
 #include "foucault/state/blocks.h"
@@ -23,6 +24,13 @@ Eigen::Vector3d rotation_error(const state::VehicleAttitude& attitude,
 
 Eigen::Vector3d sigmas(const Eigen::Matrix3d& covariance) {
   return covariance.diagonal().cwiseMax(0).cwiseSqrt();
+}
+
+/// A state that was carried on without fixes is off by as much, and knows.
+bool lies_elsewhere(const Eigen::Vector3d& error, const Eigen::Vector3d& sigma) {
+  constexpr double kSigmas = 10;
+  const double distance = error.head<2>().norm();
+  return distance > kElsewhere && distance > kSigmas * sigma.head<2>().norm();
 }
 
 std::optional<double> mean_of(const std::optional<SquareConsistency>& squares) {
@@ -139,6 +147,7 @@ void RunMetricsCollector::reference_error(const state::Epoch& epoch,
   if (error.euler) add_attitude(epoch, t_ns, *error.euler);
   if (t_ns < from_ns_) return;
   position_.add(error.position_n, sigmas(position));
+  if (lies_elsewhere(error.position_n, sigmas(position))) ++elsewhere_;
   if (error.velocity_n) velocity_.add(*error.velocity_n, sigmas(velocity));
 }
 
@@ -192,8 +201,21 @@ RunMetrics RunMetricsCollector::metrics() const {
     m.gnss.rejected_mean_nis = rejected_nis_sum_ / static_cast<double>(m.gnss.rejected_samples);
   }
   m.trust = trust_in(m.consistency, states_, aids_);
-  if (position_.squares.samples > 0) m.reference = reference_metrics(m.consistency);
+  compare_with_reference(m);
   return m;
+}
+
+void RunMetricsCollector::compare_with_reference(RunMetrics& m) const {
+  if (position_.squares.samples == 0) return;
+  const ReferenceMetrics compared = reference_metrics(m.consistency);
+  if (2 * elsewhere_ <= compared.samples) {
+    m.reference = compared;
+    return;
+  }
+  m.reference_elsewhere_m = compared.horizontal_rmse;
+  m.consistency.position_nees.reset();
+  m.consistency.velocity_nees.reset();
+  m.consistency.attitude_nees.reset();
 }
 
 }  // namespace foucault::evaluation

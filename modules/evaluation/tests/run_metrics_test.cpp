@@ -232,5 +232,24 @@ TEST(NormalizedSquare, UsesTheWholeCovariance) {
   EXPECT_FALSE(normalized_square({1, 0, 0}, -P));
 }
 
+/// As one of degrees without their minutes: told, and no accuracy.
+TEST(RunMetrics, AReferenceOfAnotherPlaceIsNotComparedWith) {
+  RunMetricsCollector collector{state::Mounting()};
+  for (int i = 0; i < 10; ++i) {
+    collector.reference_error(epoch_at(i), error_at(i, {62000.0 - i, 10, 1}));
+  }
+  const RunMetrics m = collector.metrics();
+  EXPECT_FALSE(m.reference);
+  EXPECT_FALSE(m.consistency.position_nees);
+  EXPECT_NEAR(m.reference_elsewhere_m.value(), 61995, 1);
+  for (int i = 10; i < 20; ++i) {  // as far, but by a state that knows
+    state::Epoch lost = epoch_at(i);
+    lost.covariance.diagonal().head<2>().setConstant(1e8);
+    collector.reference_error(lost, error_at(i, {62000.0, 10, 1}));
+  }
+  EXPECT_TRUE(collector.metrics().reference);
+  EXPECT_FALSE(collector.metrics().reference_elsewhere_m);
+}
+
 }  // namespace
 }  // namespace foucault::evaluation

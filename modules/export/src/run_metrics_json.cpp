@@ -164,6 +164,7 @@ Json run_metrics_json(const evaluation::RunMetrics& m,
                   .with("aids", aids_json(m.aids))
                   .with("calibration", calibration_json(calibration));
   if (m.reference) json["reference"] = reference_json(*m.reference);
+  if (m.reference_elsewhere_m) json["reference_elsewhere_m"] = *m.reference_elsewhere_m;
   json["consistency"] = consistency_json(m.consistency);
   return json;
 }

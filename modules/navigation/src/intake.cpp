@@ -32,6 +32,7 @@ Admitted Intake::admit(const Measurement& measurement) {
     return admit_increment(*increment);
   }
   if (const auto* fix = std::get_if<GnssFix>(&measurement)) return admit_fix(*fix);
+  if (const auto* pose = std::get_if<ReferencePose>(&measurement)) examination_.admit(*pose);
   return {measurement, {}, {}};
 }
 

@@ -14,9 +14,9 @@
 /// or not at all) and say in their summary what came in.
 ///
 /// A row that is wrong (number of columns, not a number, NaN, sigma zero or negative, stamp not
-/// after the one before) throws DataError with file:line and a remedy, or is skipped and counted
-/// with `skip_bad_rows`. A log whose IMU and GNSS do not overlap in time throws DataError.
-/// Wrong options or mappings throw UsageError.
+/// after the one before, or far ahead of those that follow) throws DataError with file:line and a
+/// remedy, or is skipped and counted with `skip_bad_rows`. A log whose IMU and GNSS do not overlap
+/// in time throws DataError. Wrong options or mappings throw UsageError.
 namespace foucault::rawlog {
 
 /// What all importers take.

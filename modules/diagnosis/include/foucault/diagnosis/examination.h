@@ -30,6 +30,7 @@ class Examination {
   /// What may be used of it.
   ImuGuard::Verdict admit(const ImuIncrement& increment);
   FixGuard::Verdict admit(const GnssFix& fix);
+  void admit(const ReferencePose& pose) { reference_.add(pose); }
   /// A fix that the caller has left out for a reason of its own is one of the stream, no more.
   void count(const GnssFix& fix) { gnss_.add(fix.t_ns); }
   /// The same where nothing is used.
@@ -59,6 +60,8 @@ class Examination {
   SigmaFacts sigmas_;
   std::optional<double> lever_arm_;
   RestWatch rest_;
+  CommutationWatch commutation_;
+  ReferenceWatch reference_;
   AccelerationMatch acceleration_;
   Plausibility plausibility_;
   TurnMatcher near_;  ///< as that of Plausibility, about no offset and finer

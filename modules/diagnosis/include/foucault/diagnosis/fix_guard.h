@@ -68,6 +68,7 @@ class FixGuard {
 
   std::optional<Place> believed_, doubted_;
   HeldPositions held_positions_;
+  int64_t seen_ = 0;
   Tally no_position_, out_of_reach_, held_, bad_velocity_;
 };
 

@@ -5,7 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "foucault/diagnosis/commutation_facts.h"
 #include "foucault/diagnosis/force_facts.h"
+#include "foucault/diagnosis/reference_facts.h"
 #include "foucault/diagnosis/rest_facts.h"
 #include "foucault/diagnosis/sigma_facts.h"
 #include "foucault/diagnosis/stream_facts.h"
@@ -23,6 +25,8 @@ struct LogFacts {
   std::optional<double> lever_arm_m;  ///< of the first fix
   ForceFacts force;                   ///< its mean forward, right, down
   RestFacts rest;
+  CommutationFacts commutation;
+  ReferenceFacts reference;
   std::optional<TurnMatch> turns;
   /// Correlation of the change of speed with the specific force forward and to the right.
   std::optional<Eigen::Vector2d> acceleration_match;

@@ -65,7 +65,10 @@ struct RunMetrics {
   int64_t epochs = 0;
   double duration_s = 0;  ///< from the first to the last epoch
   GnssMetrics gnss;
-  std::optional<ReferenceMetrics> reference;  ///< none if no epoch had a reference
+  std::optional<ReferenceMetrics> reference;  ///< none if no epoch had a reference, or this:
+  /// It lies elsewhere, at most epochs further than kElsewhere and ten sigmas of the position: its
+  /// horizontal distance, RMS [m]. Nothing is compared with it.
+  std::optional<double> reference_elsewhere_m;
   Consistency consistency;
   Trust trust;
 };
@@ -110,6 +113,7 @@ class RunMetricsCollector : public state::Sink {
 
   void add_rejected(const state::FixResult& fix);
   void add_attitude(const state::Epoch& epoch, int64_t t_ns, const Eigen::Vector3d& euler_error);
+  void compare_with_reference(RunMetrics& m) const;
   ReferenceMetrics reference_metrics(const Consistency& consistency) const;
 
   state::Mounting mounting_;
@@ -124,6 +128,7 @@ class RunMetricsCollector : public state::Sink {
   Squares rejected_innovation_;
   double rejected_nis_sum_ = 0;
   Aids aids_;
+  int64_t elsewhere_ = 0;  ///< epochs whose reference lies elsewhere
   Errors position_;
   Errors velocity_;
   Errors attitude_;
