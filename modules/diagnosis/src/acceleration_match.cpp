@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "foucault/core/constants.h"
 #include "foucault/core/position.h"
 #include "foucault/core/so3.h"
 #include "foucault/core/time.h"
