@@ -190,7 +190,8 @@ class ImuReader : public RecordReader {
         gyro_(three(columns_, {"gyro_x", "gyro_y", "gyro_z"})),
         accel_(three(columns_, {"accel_x", "accel_y", "accel_z"})),
         gyro_scale_(mapping.gyro_unit == "deg_s" ? kDegree : 1),
-        accel_scale_(mapping.accel_unit == "g" ? kStandardGravity : 1) {
+        accel_scale_((mapping.accel_sign == "-1" ? -1 : 1) *
+                     (mapping.accel_unit == "g" ? kStandardGravity : 1)) {
     if (columns_.has("wheel_speed")) wheel_speed_ = columns_.of("wheel_speed");
   }
 

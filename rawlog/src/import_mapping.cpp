@@ -83,6 +83,8 @@ void ImuMapping::fields(ConfigFields& f) {
   TableMapping::fields(f);
   f.text("gyro_unit", gyro_unit, {"rad_s", "deg_s"}, "unit of the angular rates");
   f.text("accel_unit", accel_unit, {"m_s2", "g"}, "unit of the specific forces");
+  f.text("accel_sign", accel_sign, {"1", "-1"},
+         "-1 if an axis that looks up shows -1 g at rest, as phones have it");
   f.texts("axes", axes, "sensor axes that look forward, right, down, e.g. [-x, y, -z]");
   f.vector3("mounting_rpy_deg", mounting_rpy_deg,
             "roll, pitch, heading of the sensor, on those axes, in the vehicle [deg]");

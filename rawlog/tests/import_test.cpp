@@ -279,6 +279,16 @@ TEST_F(Csv, UnitsAndRecordedAxes) {
   EXPECT_LT((source.lever_arm() - Eigen::Vector3d(-0.5, -0.25, 1)).norm(), 1e-12);
 }
 
+TEST_F(Csv, SignOfTheAccelerometerAlone) {
+  run(std::string(kImu) + "  accel_unit: g\n  accel_sign: -1\n" + kGnss +
+      "lever_arm_m: [0, 0, 0]\n");
+  const auto increments = all<ImuIncrement>(options_.out);
+  ASSERT_EQ(increments.size(), 2U);
+  EXPECT_LT((increments[0].dtheta_b / 0.01 - Eigen::Vector3d(1, 2, 3)).norm(), 1e-14);
+  EXPECT_LT((increments[0].dvel_b / 0.01 + Eigen::Vector3d(0.1, 0.2, 1) * kStandardGravity).norm(),
+            1e-12);
+}
+
 TEST_F(Csv, MountingAnglesAreTheSensorsAttitudeInTheVehicle) {
   ImuMapping mapping;
   mapping.axes = {"-x", "y", "-z"};

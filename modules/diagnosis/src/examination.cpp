@@ -3,27 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "foucault/core/time.h"
 
 namespace foucault::diagnosis {
-namespace {
-
-constexpr double kNear = 1.0;       // [s]
-constexpr double kFineStep = 0.02;  // [s]
-/// An offset beyond kNear is believed if courses agree with it clearly better.
-constexpr double kClearlyBetter = 0.02;  // correlation
-
-}  // namespace
 
 Examination::Examination(const imu::ImuNoise& configured, const state::Mounting& mounting,
                          const GnssOptions& gnss)
-    : configured_(configured),
-      q_v_b_(mounting.q_v_b.normalized()),
-      options_(gnss),
-      acceleration_(q_v_b_),
-      near_(kNear, kFineStep) {}
+    : configured_(configured), options_(gnss), plausibility_(mounting.q_v_b.normalized()) {}
 
 ImuGuard::Verdict Examination::admit(const ImuIncrement& increment) {
   const std::optional<int64_t> before_ns = imu_guard_.last_end_ns();
@@ -32,9 +19,7 @@ ImuGuard::Verdict Examination::admit(const ImuIncrement& increment) {
   if (!verdict.increment) return verdict;
   rest_.add(*verdict.increment);
   commutation_.add(*verdict.increment);
-  acceleration_.add(*verdict.increment);
   plausibility_.watch(*verdict.increment);
-  near_.add(*verdict.increment);
   return verdict;
 }
 
@@ -48,9 +33,7 @@ FixGuard::Verdict Examination::admit(const GnssFix& given) {
   if (!options_.allows(fix)) return verdict;
   rest_.add(fix);
   reference_.add(fix);
-  acceleration_.add(fix);
   plausibility_.watch(fix);
-  near_.add(fix);
   return verdict;
 }
 
@@ -71,20 +54,12 @@ LogFacts Examination::facts() const {
   facts.sigmas = sigmas_;
   facts.lever_arm_m = lever_arm_;
   facts.force = plausibility_.force();
-  facts.force.mean = q_v_b_ * facts.force.mean;
   facts.rest = rest_.facts();
   facts.commutation = commutation_.facts();
   facts.reference = reference_.facts();
-  facts.turns = turns();
-  facts.acceleration_match = acceleration_.correlation();
+  facts.turns = plausibility_.turns();
+  facts.accelerations = plausibility_.accelerations();
   return facts;
-}
-
-std::optional<TurnMatch> Examination::turns() const {
-  const std::optional<TurnMatch> near = near_.best(), far = plausibility_.turns();
-  if (!near || !far) return near ? near : far;
-  const bool is_far = std::abs(far->correlation) > std::abs(near->correlation) + kClearlyBetter;
-  return is_far ? far : near;
 }
 
 std::vector<state::Notice> Examination::warnings() const {

@@ -8,9 +8,12 @@
 #include "foucault/core/constants.h"
 #include "foucault/core/time.h"
 #include "foucault/core/time_mismatch.h"
+#include "foucault/diagnosis/side_facts.h"
 
 namespace foucault::diagnosis {
 namespace {
+
+constexpr double kAgree = 0.9;  // of correlations, as in turn_match.cpp
 
 /// Collects findings.
 class Judgement {
@@ -208,59 +211,127 @@ void judge_force(const LogFacts& facts, Judgement& out) {
   }
   const bool has_direction = f.norm() > 0.5 * facts.force.length;  // else it rolls and loops
   if (has_direction && -f.z() <= 0.5 * f.norm()) {
-    out.error("gravity", text + ": up is not up", "correct the axes of the import");
+    const std::optional<WrongForce> side =
+        facts.turns ? wrong_side(*facts.turns, facts.accelerations, f) : std::nullopt;
+    const bool is_sign = is_upside_down(f) && side;
+    out.error("gravity", text + ": up is not up",
+              is_sign ? side->remedy : "correct the axes of the import");
   } else {
     out.ok("gravity", text);
   }
 }
 
 void judge_axes(const LogFacts& facts, Judgement& out) {
-  if (!facts.acceleration_match) return;
-  const Eigen::Vector2d& match = *facts.acceleration_match;
-  const std::string text = fmt::format(
-      "speed changes with the force forward by {:.2f}, to the right by {:.2f} "
-      "(correlations)",
-      match.x(), match.y());
-  constexpr double kClear = 0.6;  // of pure noise 60 pairs have 0.13
-  if (match.x() < -kClear) {
-    out.error("axes", text, "forward is backward; correct the axes of the import");
-  } else if (std::abs(match.y()) > kClear && std::abs(match.y()) > 2 * std::abs(match.x())) {
-    out.error("axes", text, "forward is sideways; correct the axes of the import");
-  } else {
-    out.ok("axes", text);
+  constexpr double kClear = 0.6;  // of the correlation; chosen: less is a vehicle of its own ways
+  constexpr double kStraight = 45 * kDegree;
+  if (facts.turns) {
+    if (const auto side = wrong_side(*facts.turns, facts.accelerations, facts.force.mean)) {
+      const bool is_gross = std::abs(facts.turns->correlation) > kAgree;
+      return is_gross ? out.error("axes", side->text, side->remedy)
+                      : out.warn("axes", side->text, side->remedy);
+    }
   }
+  if (!facts.accelerations) return out.ok("axes", "accelerations are too small to tell");
+  const AccelerationFit& fit = *facts.accelerations;
+  const double angle = fit.angle.value;
+  const std::string text = fmt::format(
+      "forces are {:.0f} deg (sigma {:.0f}) to the {} of accelerations by fixes, correlation "
+      "{:.2f}",
+      std::abs(angle) / kDegree, fit.angle.sigma / kDegree, angle >= 0 ? "right" : "left",
+      fit.correlation);
+  const bool is_clear = fit.correlation > kClear && !fit.mirrored &&
+                        std::abs(angle) > kStraight + 3 * fit.angle.sigma;
+  if (!is_clear) return out.ok("axes", text);
+  const bool is_backward = std::abs(angle) > kPi - kStraight;
+  out.warn("axes", text,
+           is_backward ? "forward is backward; correct the axes of the import, unless the vehicle "
+                         "went backward"
+                       : "forward is sideways; correct the axes of the import, unless the vehicle "
+                         "goes where it does not point");
+}
+
+/// Turns alone see an IMU ahead of the axle, and slip of tyres, as an offset; forces do not. An
+/// antenna ahead of where it is said to be looks like one to both: if nothing is said of it, turns,
+/// which know that arm as well as they can, must see the offset too.
+bool is_late(const LogFacts& facts, const std::optional<Measured>& by_forces) {
+  constexpr double kHarmless = 0.04;  // [s]; a lever arm wrong by 0.4 m at 10 m/s
+  /// Tyres that slip by 4 mrad per m/s^2 turn the course as 0.08 s do at 10 m/s.
+  constexpr double kHarmlessOfTurns = 0.1;  // [s]
+  constexpr double kSure = 3;               // sigmas
+  const TurnMatch& turns = *facts.turns;
+  if (!by_forces) {
+    return std::abs(turns.offset_s) > kHarmlessOfTurns + kSure * turns.offset_sigma_s;
+  }
+  if (std::abs(by_forces->value) < kHarmless + kSure * by_forces->sigma) return false;
+  const bool is_arm_told = facts.lever_arm_m.value_or(0) > 0;
+  const bool turns_agree = turns.offset_s * by_forces->value > 0 &&
+                           std::abs(turns.offset_s) > kSure * turns.offset_sigma_s;
+  return is_arm_told || turns_agree;
+}
+
+std::string describe_offset(const Measured& offset) {
+  return fmt::format("{:.3f} s (sigma {:.3f}) {} those of GNSS", std::abs(offset.value),
+                     offset.sigma, offset.value >= 0 ? "after" : "before");
+}
+
+std::string describe_turns(const TurnMatch& match, const std::optional<Measured>& by_forces) {
+  std::string text = "stamps of the IMU are ";
+  if (by_forces) text += describe_offset(*by_forces) + " by accelerations, ";
+  text += describe_offset({match.offset_s, match.offset_sigma_s}) + " by turns";
+  text += fmt::format("; {} courses, correlation {:.3f}, gyroscopes turn {:.3f} times as much",
+                      match.samples, match.correlation, match.slope);
+  if (match.gyro_factor) {
+    text += fmt::format(", in gentle turns {:.3f} (sigma {:.3f})", match.gyro_factor->value,
+                        match.gyro_factor->sigma);
+  }
+  if (match.drift) {
+    text += fmt::format(", the offset grows by {:.0f} ppm (sigma {:.0f})", 1e6 * match.drift->value,
+                        1e6 * match.drift->sigma);
+  }
+  return text;
+}
+
+/// A clock that runs fast; crystals are within 100 ppm. Short recordings, in which the vehicle may
+/// have changed its ways, and 50 ms are a drift of more, tell nothing of it.
+void judge_drift(const TurnMatch& match, Judgement& out) {
+  constexpr double kHarmless = 50e-6, kLargestSigma = 50e-6, kSure = 4;
+  if (!match.drift || match.drift->sigma > kLargestSigma) return;
+  if (std::abs(match.drift->value) < kHarmless + kSure * match.drift->sigma) return;
+  out.warn("clock drift",
+           fmt::format("the offset of the IMU's stamps grows by {:.0f} ppm (sigma {:.0f})",
+                       1e6 * match.drift->value, 1e6 * match.drift->sigma),
+           "one of the clocks runs fast: correct the stamps by that before the import");
 }
 
 void judge_turns(const LogFacts& facts, Judgement& out) {
-  constexpr double kHarmless = 0.03;  // [s]; an antenna 0.3 m ahead of the axle at 10 m/s
-  constexpr double kAgree = 0.9;      // as in turn_match.cpp
+  constexpr double kMisfit = 3;  // rms of what is left, in sigmas
   if (!facts.turns) return out.ok("time offset", "too few turns to tell");
   const TurnMatch& match = *facts.turns;
   if (const std::optional<std::string> wrong = gross_mismatch(match, facts.gnss.first_ns)) {
     return out.error("time offset", *wrong, "see there");
   }
-  std::string text = fmt::format(
-      "stamps of the IMU are {:.3f} s (sigma {:.3f}) {} those of GNSS; {} courses, correlation "
-      "{:.3f}, gyroscopes turn {:.3f} times as much",
-      std::abs(match.offset_s), match.offset_sigma_s, match.offset_s >= 0 ? "after" : "before",
-      match.samples, match.correlation, match.slope);
-  if (match.gyro_factor) {
-    text += fmt::format(", in gentle turns {:.3f} (sigma {:.3f})", match.gyro_factor->value,
-                        match.gyro_factor->sigma);
-  }
+  if (turns_against(match)) return;  // see judge_axes
   if (match.correlation < kAgree) {
-    return out.warn("turns",
-                    fmt::format("courses of GNSS and turns of the gyroscopes do not agree, "
-                                "correlation {:.2f} in {} courses",
-                                match.correlation, match.samples),
-                    "look for outliers in the innovations of `foucault run`, or give the axes");
+    const std::string text = fmt::format(
+        "courses of GNSS and turns of the gyroscopes: correlation {:.2f} in {} courses, {:.1f} "
+        "sigmas apart",
+        match.correlation, match.samples, match.misfit);
+    if (match.misfit < kMisfit) return out.ok("turns", text + ", too small to tell more");
+    return out.warn("turns", text,
+                    "vehicles that go where they do not point do that (copters, boats); else look "
+                    "for outliers in the innovations of `foucault run`");
   }
-  if (std::abs(match.offset_s) > kHarmless + 3 * match.offset_sigma_s) {
-    return out.warn("time offset", text,
-                    fmt::format("imu: {{time: {{offset_s: {:.3f}}}}} in the import's mapping",
-                                -match.offset_s));
+  std::optional<Measured> of_forces;
+  if (facts.accelerations && !facts.accelerations->mirrored &&
+      facts.accelerations->correlation > kAgree) {
+    of_forces = facts.accelerations->offset_s;
   }
-  out.ok("time offset", text);
+  const std::string text = describe_turns(match, of_forces);
+  judge_drift(match, out);
+  if (!is_late(facts, of_forces)) return out.ok("time offset", text);
+  const double offset = of_forces ? of_forces->value : match.offset_s;
+  out.warn("time offset", text,
+           fmt::format("imu: {{time: {{offset_s: {:.3f}}}}} in the import's mapping", -offset));
 }
 
 }  // namespace

@@ -8,44 +8,61 @@
 namespace foucault::diagnosis {
 namespace {
 
-Eigen::Quaterniond about_down(double angle) {
-  return Eigen::Quaterniond(Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()));
+std::optional<AccelerationFit> fit_of(const LevelDrive& drive, double mounting = 0) {
+  AccelerationMatch match(
+      Eigen::Quaterniond(Eigen::AngleAxisd(mounting, Eigen::Vector3d::UnitZ())));
+  drive.feed(match);
+  return match.best();
 }
 
 TEST(AccelerationMatch, ForwardIsForwardBackwardOrSideways) {
-  AccelerationMatch forward(about_down(0)), backward(about_down(kPi)), right(about_down(kPi / 2));
-  surging().feed(forward);
-  surging().feed(backward);
-  surging().feed(right);
-  EXPECT_GT(forward.correlation()->x(), 0.99);
-  EXPECT_NEAR(forward.correlation()->y(), 0, 0.1);
-  EXPECT_LT(backward.correlation()->x(), -0.99);
-  EXPECT_GT(right.correlation()->y(), 0.99);
+  for (const LevelDrive& drive : {surging(), town()}) {
+    for (const double turned : {0.0, kPi / 2, kPi}) {
+      const std::optional<AccelerationFit> fit = fit_of(drive, turned);
+      ASSERT_TRUE(fit);
+      EXPECT_GT(fit->correlation, 0.9);
+      EXPECT_NEAR(std::cos(fit->angle.value - turned), 1, 0.01);
+    }
+  }
+}
+
+/// A walker's axes show as well as a car's.
+TEST(AccelerationMatch, SlowVehiclesTellToo) {
+  LevelDrive walk = winding();
+  walk.speed = [](double t) { return 1.4 + 0.3 * std::sin(0.8 * t); };
+  const std::optional<AccelerationFit> fit = fit_of(walk, kPi);
+  ASSERT_TRUE(fit);
+  EXPECT_NEAR(std::abs(fit->angle.value), kPi, 0.2);
+}
+
+TEST(AccelerationMatch, FindsOffsetsWhateverTheLeverArm) {
+  for (const double late : {0.0, 0.08, -0.3}) {
+    LevelDrive drive = town();
+    drive.imu_late = late;
+    drive.arm = {1.5, 0.3, 0};
+    const std::optional<AccelerationFit> fit = fit_of(drive);
+    ASSERT_TRUE(fit);
+    EXPECT_NEAR(fit->offset_s.value, late, 0.02);
+    EXPECT_LT(fit->offset_s.sigma, 0.02);
+  }
+}
+
+TEST(AccelerationMatch, SidesAreToldByTurnsOnly) {
+  EXPECT_FALSE(fit_of(town())->mirrored);
+  EXPECT_TRUE(fit_of(town())->is_side_known);
+  EXPECT_FALSE(fit_of(surging())->is_side_known);
+  LevelDrive swapped = town();
+  swapped.is_track_mirrored = true;
+  EXPECT_TRUE(fit_of(swapped)->mirrored);
+  EXPECT_TRUE(fit_of(swapped)->is_side_known);
 }
 
 TEST(AccelerationMatch, TellsNothingFromFewOrSteadySpeeds) {
-  AccelerationMatch few(about_down(0)), steady(about_down(0));
-  LevelDrive drive = surging();
-  drive.seconds = 50;
-  drive.feed(few);
-  EXPECT_FALSE(few.correlation());
-  drive = LevelDrive();
-  drive.seconds = 100;
-  drive.feed(steady);
-  EXPECT_FALSE(steady.correlation());
-}
-
-/// Fixes more often than once a second are passed over; rarer ones tell no change.
-TEST(AccelerationMatch, ComparesFixesASecondApart) {
-  AccelerationMatch often(about_down(0)), rare(about_down(0));
-  LevelDrive drive = surging();
-  drive.fix_interval = 0.1;
-  drive.feed(often);
-  EXPECT_GT(often.correlation()->x(), 0.99);
-  drive.fix_interval = 3;
-  drive.seconds = 400;
-  drive.feed(rare);
-  EXPECT_FALSE(rare.correlation());
+  LevelDrive few = surging(), steady, rare = surging();
+  few.seconds = 12;
+  steady.seconds = 100;
+  rare.fix_interval = 3;
+  for (const LevelDrive& drive : {few, steady, rare}) EXPECT_FALSE(fit_of(drive));
 }
 
 }  // namespace

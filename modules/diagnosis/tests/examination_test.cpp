@@ -56,12 +56,15 @@ TEST(Examination, HasNothingToSayAboutACleanRecording) {
 class TimeOffset : public ::testing::TestWithParam<double> {};
 INSTANTIATE_TEST_SUITE_P(Offsets, TimeOffset, ::testing::Values(0.0, 0.275, -0.1, 18.0, -2.5));
 
-/// The antenna is 0.1 m ahead of the axle, 10 ms at the speed of this trip.
+/// Turns alone see the IMU ahead of the axle in it.
 TEST_P(TimeOffset, IsFound) {
   const LogFacts facts =
       facts_of(city(), {{simulation::FaultKind::imu_stamps_offset, 0, 1e9, GetParam()}});
   ASSERT_TRUE(facts.turns.has_value());
-  EXPECT_NEAR(facts.turns->offset_s, GetParam(), 0.02);
+  const bool is_near = std::abs(GetParam()) < 1;  // as far as accelerations look
+  ASSERT_TRUE(!is_near || facts.accelerations.has_value());
+  const double found = is_near ? facts.accelerations->offset_s.value : facts.turns->offset_s;
+  EXPECT_NEAR(found, GetParam(), 0.02);
   EXPECT_GT(facts.turns->correlation, 0.97);
   EXPECT_NEAR(facts.turns->slope, 1, 0.05);
 }
@@ -173,7 +176,7 @@ TEST(Examination, ForwardThatIsBackward) {
       Eigen::Quaterniond(Eigen::AngleAxisd(kPi, Eigen::Vector3d::UnitZ()))};
   Examination examination(imu::imu_preset("ADIS16465"), turned);
   while (const std::optional<Measurement> m = source.next()) examination.add(*m);
-  EXPECT_EQ(finding(examination.findings(), "axes").severity, Severity::error);
+  EXPECT_EQ(finding(examination.findings(), "axes").severity, Severity::warning);
 }
 
 TEST(Examination, NoiseAgainstTheConfiguration) {

@@ -29,7 +29,8 @@ LogFacts good() {
   facts.turns = TurnMatch();
   facts.turns->slope = facts.turns->correlation = 1;
   facts.turns->gyro_factor = MeasuredFactor{1, 0.01, 30};
-  facts.acceleration_match = Eigen::Vector2d(0.9, 0);
+  facts.turns->samples = 100;
+  facts.accelerations = AccelerationFit{{0, 0.01}, 0.95, {0, 0.01}, false, true, 100};
   return facts;
 }
 
@@ -54,7 +55,7 @@ TEST(Judgement, AGoodRecordingIsWell) {
   EXPECT_EQ(judged(good()).size(), 11u);
   LogFacts few = good();
   few.turns.reset();
-  few.acceleration_match.reset();
+  few.accelerations.reset();
   few.force.factor.reset();
   few.lever_arm_m.reset();
   few.rest.seconds = 9;
@@ -158,21 +159,56 @@ TEST_F(Complaint, ARateThatIsTooLow) {
 }
 
 TEST_F(Complaint, Axes) {
-  facts_.acceleration_match = Eigen::Vector2d(-0.8, 0);
+  facts_.accelerations->angle.value = 3;
+  EXPECT_THAT(complaints(facts_), HasSubstr("warning axes: forces are 172 deg (sigma 1) to the "
+                                            "right"));
   EXPECT_THAT(complaints(facts_), HasSubstr("forward is backward"));
-  facts_.acceleration_match = Eigen::Vector2d(0.2, -0.8);
+  facts_.accelerations->angle.value = -1.6;
   EXPECT_THAT(complaints(facts_), HasSubstr("forward is sideways"));
+  facts_.accelerations->correlation = 0.4;  // a vehicle of its own ways
+  EXPECT_EQ(complaints(facts_), "");
+}
+
+TEST_F(Complaint, Sides) {
+  facts_.turns->correlation = -0.95;
+  EXPECT_THAT(complaints(facts_), HasSubstr("error axes: the gyroscopes turn against"));
+  facts_.turns->correlation = -0.6;
+  EXPECT_THAT(complaints(facts_), HasSubstr("warning axes: the gyroscopes turn against"));
+  facts_.force.mean.z() = 9.8;
+  EXPECT_THAT(complaints(facts_), AllOf(HasSubstr("error gravity"), HasSubstr("accel_sign: -1"),
+                                        ::testing::Not(HasSubstr("correct the axes"))));
+}
+
+/// Turns see slip and arms as an offset, so forces must see it.
+TEST_F(Complaint, Offsets) {
+  facts_.turns->offset_s = -0.08;
+  facts_.turns->offset_sigma_s = 0.01;
+  EXPECT_EQ(complaints(facts_), "");
+  facts_.accelerations->offset_s = {-0.07, 0.008};
+  EXPECT_THAT(complaints(facts_),
+              AllOf(HasSubstr("0.070 s (sigma 0.008) before those of GNSS by accelerations, 0.080"),
+                    HasSubstr("offset_s: 0.070")));
+  facts_.turns->offset_sigma_s = 0.05;
+  EXPECT_THAT(complaints(facts_), HasSubstr("time offset"));
+  facts_.lever_arm_m.reset();  // it may be of an antenna that is ahead
+  EXPECT_EQ(complaints(facts_), "");
+  facts_.accelerations.reset();
+  EXPECT_EQ(complaints(facts_), "");
+  facts_.turns->offset_s = 0.3;
+  EXPECT_THAT(complaints(facts_), HasSubstr("0.300 s (sigma 0.050) after those of GNSS by turns"));
 }
 
 TEST_F(Complaint, Turns) {
-  facts_.turns->offset_s = -0.2;
-  EXPECT_THAT(complaints(facts_), AllOf(HasSubstr("0.200 s (sigma 0.000) before those of GNSS"),
-                                        HasSubstr("offset_s: 0.200")));
+  facts_.turns->drift = Measured{200e-6, 10e-6};
+  EXPECT_THAT(complaints(facts_), HasSubstr("warning clock drift"));
+  facts_.turns->drift->sigma = 100e-6;
+  EXPECT_EQ(complaints(facts_), "");
   facts_.turns->offset_s = 7;
-  facts_.turns->residual_share = 0;
   EXPECT_THAT(complaints(facts_), HasSubstr("error time offset: stamps of the IMU are 7.00 s"));
   facts_.turns->correlation = 0.7;
-  EXPECT_THAT(complaints(facts_), HasSubstr("do not agree, correlation 0.70"));
+  EXPECT_EQ(complaints(facts_), "");  // as noise makes it
+  facts_.turns->misfit = 5;
+  EXPECT_THAT(complaints(facts_), HasSubstr("correlation 0.70 in 100 courses, 5.0 sigmas apart"));
 }
 
 TEST_F(Complaint, Noise) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include "foucault/core/time.h"
@@ -22,7 +23,12 @@ struct LevelDrive {
   double fix_interval = 1;  ///< [s]
   double fix_sigma = 0.01;  ///< [m], each axis
   double accel_factor = 1, gyro_factor = 1;
-  double imu_late = 0;  ///< [s] that stamps of the IMU are after those of GNSS
+  double accel_right_factor = 1;   ///< of the axis that looks right, beside accel_factor
+  Eigen::Vector3d arm{0, 0, 0};    ///< IMU to antenna, which fixes tell [m]
+  double untold_arm = 0;           ///< of the antenna ahead of it [m]
+  bool is_track_mirrored = false;  ///< north and east are swapped
+  double clock_fast = 0;           ///< [s/s], of the IMU's
+  double imu_late = 0;             ///< [s] that stamps of the IMU are after those of GNSS
 
   static constexpr double kStep = 0.01;                                     // [s]
   static constexpr int64_t kStart = 1'600'000'000 * kNanosecondsPerSecond;  // at t = 0
@@ -43,7 +49,11 @@ struct LevelDrive {
         GnssFix fix;
         fix.t_ns = kStart + nanoseconds(t);
         const Eigen::Vector3d error(normal(rng), normal(rng), normal(rng));
-        fix.antenna = frame.to_geodetic(p + error);
+        Eigen::Vector3d antenna =
+            p + attitude(t) * (arm + untold_arm * Eigen::Vector3d::UnitX()) + error;
+        if (is_track_mirrored) std::swap(antenna.x(), antenna.y());
+        fix.antenna = frame.to_geodetic(antenna);
+        fix.p_b_a = arm;
         fix.position_covariance = fix_sigma * fix_sigma * Eigen::Matrix3d::Identity();
         out.emplace_back(fix);
       }
@@ -51,11 +61,12 @@ struct LevelDrive {
       const Eigen::Quaterniond q0 = attitude(t), q1 = attitude(t + kStep);
       const Eigen::AngleAxisd turn(q0.conjugate() * q1);
       ImuIncrement increment;
-      increment.t_begin_ns = kStart + nanoseconds(t + imu_late);
-      increment.t_end_ns = kStart + nanoseconds(t + kStep + imu_late);
+      increment.t_begin_ns = kStart + nanoseconds(t * (1 + clock_fast) + imu_late);
+      increment.t_end_ns = kStart + nanoseconds((t + kStep) * (1 + clock_fast) + imu_late);
       increment.dtheta_b = gyro_factor * turn.angle() * turn.axis();
       const Eigen::Vector3d dv = v1 - v0 - gravity * kStep * Eigen::Vector3d::UnitZ();
       increment.dvel_b = accel_factor * (attitude(t + kStep / 2).conjugate() * dv);
+      increment.dvel_b.y() *= accel_right_factor;
       out.emplace_back(increment);
       p += kStep * velocity(t + kStep / 2);
     }
@@ -88,6 +99,14 @@ inline LevelDrive winding() {
   LevelDrive drive;
   drive.seconds = 200;
   drive.heading = [](double t) { return 0.8 * std::sin(0.31 * t) + 0.5 * std::sin(0.53 * t); };
+  return drive;
+}
+
+/// Bends at speeds between 4 and 12 m/s.
+inline LevelDrive town() {
+  LevelDrive drive = winding();
+  drive.seconds = 300;
+  drive.speed = [](double t) { return 8 + 4 * std::sin(0.17 * t); };
   return drive;
 }
 

@@ -46,6 +46,8 @@ class ImuMapping : public TableMapping {
  public:
   std::string gyro_unit = "rad_s";  ///< rad_s | deg_s
   std::string accel_unit = "m_s2";  ///< m_s2 | g (9.80665 m/s^2)
+  /// -1: at rest the axis that looks up shows -1 g, as phones have it (CoreMotion).
+  std::string accel_sign = "1";
   /// Which sensor axis looks forward, right, down: each x, y or z with a sign. Data stay on the
   /// sensor's axes; this becomes the mounting.
   std::vector<std::string> axes = {"x", "y", "z"};

@@ -1,11 +1,9 @@
 #pragma once
 
-#include <Eigen/Geometry>
 #include <optional>
 #include <vector>
 
 #include "foucault/core/measurement.h"
-#include "foucault/diagnosis/acceleration_match.h"
 #include "foucault/diagnosis/fix_guard.h"
 #include "foucault/diagnosis/gnss_options.h"
 #include "foucault/diagnosis/imu_guard.h"
@@ -49,10 +47,7 @@ class Examination {
   std::vector<state::Notice> warnings() const;
 
  private:
-  std::optional<TurnMatch> turns() const;
-
   imu::ImuNoise configured_;
-  Eigen::Quaterniond q_v_b_;
   GnssOptions options_;
   ImuGuard imu_guard_;
   FixGuard fix_guard_;
@@ -62,9 +57,7 @@ class Examination {
   RestWatch rest_;
   CommutationWatch commutation_;
   ReferenceWatch reference_;
-  AccelerationMatch acceleration_;
   Plausibility plausibility_;
-  TurnMatcher near_;  ///< as that of Plausibility, about no offset and finer
 };
 
 }  // namespace foucault::diagnosis

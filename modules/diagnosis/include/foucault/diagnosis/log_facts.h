@@ -1,10 +1,10 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "foucault/diagnosis/acceleration_match.h"
 #include "foucault/diagnosis/commutation_facts.h"
 #include "foucault/diagnosis/force_facts.h"
 #include "foucault/diagnosis/reference_facts.h"
@@ -28,8 +28,7 @@ struct LogFacts {
   CommutationFacts commutation;
   ReferenceFacts reference;
   std::optional<TurnMatch> turns;
-  /// Correlation of the change of speed with the specific force forward and to the right.
-  std::optional<Eigen::Vector2d> acceleration_match;
+  std::optional<AccelerationFit> accelerations;
 };
 
 }  // namespace foucault::diagnosis
