@@ -29,6 +29,9 @@ constexpr int64_t kEnoughSamples = 12;  // for five unknowns
 /// The best of 100 offsets, a third of them on their own, at both hands, is by chance above
 /// 4 / sqrt(n) once in 100000 times.
 constexpr double kChance = 4;
+/// Ratio of what is left. At an offset of a second turns to either side fit from the other side
+/// too, a field's rows to 0.9.
+constexpr double kClearly = 0.25;
 
 }  // namespace
 
@@ -217,8 +220,10 @@ std::optional<AccelerationFit> AccelerationMatch::best() const {
   const double n = static_cast<double>(samples_);
   result.correlation = std::sqrt(std::max(0.0, 1 - at.residual / aa));
   if (result.correlation < kChance / std::sqrt(n)) return std::nullopt;
+  const double of_other = std::max(of_mirrored, of_straight);
   result.is_side_known =
-      std::abs(of_mirrored - of_straight) > 2 * kChance * kChance * at.residual / (2 * n - 5);
+      of_other - at.residual > 2 * kChance * kChance * at.residual / (2 * n - 5) &&
+      at.residual < kClearly * of_other;
   const double variance = at.residual / (2 * n - 5);
   const double left = fit(sums_[index - 1], result.mirrored).residual;
   const double right = fit(sums_[index + 1], result.mirrored).residual;

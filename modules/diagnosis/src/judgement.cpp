@@ -167,7 +167,9 @@ void judge_noise(const LogFacts& facts, const imu::ImuNoise& configured, Judgeme
   const std::string bias =
       fmt::format("{:.3g} deg/h at rest, {:.3g} deg/h configured",
                   facts.rest.gyro_mean / kDegree * 3600, expected / kDegree * 3600);
-  if (facts.rest.gyro_mean > 5 * expected + kEarthRate) {
+  const double noise = configured.gyro_noise_density / std::sqrt(facts.rest.seconds);
+  constexpr double kSettling = 5e-6;  // 1 deg/h, of a vehicle at rest; chosen
+  if (facts.rest.gyro_mean > 5 * std::hypot(expected, noise) + kEarthRate + kSettling) {
     out.warn("gyroscope bias", bias,
              fmt::format("imu.gyro_turn_on_deg_h={:.0f}",
                          std::ceil(facts.rest.gyro_mean / kDegree * 3600)));
@@ -250,19 +252,20 @@ void judge_axes(const LogFacts& facts, Judgement& out) {
                          "goes where it does not point");
 }
 
-/// Turns alone see an IMU ahead of the axle, and slip of tyres, as an offset; forces do not. An
+/// Turns alone see an IMU ahead of the axle, slip of tyres, steps and a reversal as an offset of
+/// tenths of a second; forces do not. An
 /// antenna ahead of where it is said to be looks like one to both: if nothing is said of it, turns,
 /// which know that arm as well as they can, must see the offset too.
 bool is_late(const LogFacts& facts, const std::optional<Measured>& by_forces) {
   constexpr double kHarmless = 0.04;  // [s]; a lever arm wrong by 0.4 m at 10 m/s
-  /// Tyres that slip by 4 mrad per m/s^2 turn the course as 0.08 s do at 10 m/s.
-  constexpr double kHarmlessOfTurns = 0.1;  // [s]
-  constexpr double kSure = 3;               // sigmas
+  /// What tyres that slip by 4 mrad per m/s^2 make of turns at 10 m/s.
+  constexpr double kSlip = 0.1;  // [s]
+  constexpr double kSure = 3;    // sigmas
   const TurnMatch& turns = *facts.turns;
-  if (!by_forces) {
-    return std::abs(turns.offset_s) > kHarmlessOfTurns + kSure * turns.offset_sigma_s;
-  }
+  if (!by_forces) return false;
   if (std::abs(by_forces->value) < kHarmless + kSure * by_forces->sigma) return false;
+  const double apart = std::abs(by_forces->value - turns.offset_s);
+  if (apart > kSlip + kSure * std::hypot(by_forces->sigma, turns.offset_sigma_s)) return false;
   const bool is_arm_told = facts.lever_arm_m.value_or(0) > 0;
   const bool turns_agree = turns.offset_s * by_forces->value > 0 &&
                            std::abs(turns.offset_s) > kSure * turns.offset_sigma_s;
@@ -316,10 +319,10 @@ void judge_turns(const LogFacts& facts, Judgement& out) {
         "courses of GNSS and turns of the gyroscopes: correlation {:.2f} in {} courses, {:.1f} "
         "sigmas apart",
         match.correlation, match.samples, match.misfit);
-    if (match.misfit < kMisfit) return out.ok("turns", text + ", too small to tell more");
-    return out.warn("turns", text,
-                    "vehicles that go where they do not point do that (copters, boats); else look "
-                    "for outliers in the innovations of `foucault run`");
+    const bool is_small = match.misfit < kMisfit;
+    return out.ok("turns", text + (is_small ? ", too small to tell more"
+                                            : ": the vehicle goes where it does not point, or the "
+                                              "fixes have outliers"));
   }
   std::optional<Measured> of_forces;
   if (facts.accelerations && !facts.accelerations->mirrored &&

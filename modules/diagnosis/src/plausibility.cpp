@@ -27,9 +27,6 @@ constexpr double kSecondForceLook = 60;  // [s]
 // Chosen: a look goes over all windows or offsets, and little is new to the next.
 constexpr int64_t kWindowsBetweenLooks = 10;
 constexpr int64_t kSamplesBetweenLooks = 20;
-/// Chosen: a whole turn in all, in twice the courses that a TurnMatch needs.
-constexpr int64_t kSamplesNeeded = 40;
-constexpr double kTurnNeeded = 6.3;  // [rad]
 
 }  // namespace
 
@@ -106,11 +103,10 @@ void Plausibility::look_at_turns() {
   next_turn_look_ = far_.samples() + kSamplesBetweenLooks;
   const std::optional<TurnMatch> match = turns();
   if (!match) return;
-  const bool clocks_show = match->samples >= kSamplesNeeded && match->turned >= kTurnNeeded;
-  const std::optional<std::string> wrong =
-      clocks_show ? gross_mismatch(*match, now_ns_) : wrong_rates(*match);
-  if (wrong) throw DataError(*wrong);
-  if (!clocks_show || match->correlation > -kAgree) return;
+  if (const std::optional<std::string> wrong = gross_mismatch(*match, now_ns_)) {
+    throw DataError(*wrong);
+  }
+  if (!match->is_enough() || match->correlation > -kAgree) return;
   if (const std::optional<WrongForce> side = wrong_side(*match, accelerations(), force().mean)) {
     throw DataError(fmt::format("{}; {}", side->text, side->remedy));
   }

@@ -1,6 +1,7 @@
 #include "foucault/diagnosis/rest_facts.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "foucault/core/time.h"
@@ -97,7 +98,7 @@ void RestWatch::take(const SteadyWay::Velocity& velocity) {
 
 void RestWatch::take(const Second& second) {
   ++still_;
-  gyro_sum_ += second.gyro;
+  for (int axis = 0; axis < 3; ++axis) gyro_[axis].add(second.gyro[axis]);
   AllanWatch::Vector6d mean;
   mean << second.gyro, second.accel;
   for (AllanWatch& allan : allan_) allan.add(mean);
@@ -118,7 +119,9 @@ RestFacts RestWatch::taken() const {
   }
   facts.gyro_noise_density = density.head<3>().maxCoeff();
   facts.accel_noise_density = density.tail<3>().maxCoeff();
-  if (still_ > 0) facts.gyro_mean = (gyro_sum_ / static_cast<double>(still_)).cwiseAbs().maxCoeff();
+  for (const FirstValues& axis : gyro_) {
+    facts.gyro_mean = std::max(facts.gyro_mean, std::abs(axis.median()));
+  }
   facts.fix_scatter = scatter_.median() / 0.8326;  // of a Rayleigh distribution, over sqrt(2)
   facts.fix_pairs = static_cast<int64_t>(scatter_.size());
   return facts;

@@ -390,8 +390,16 @@ std::optional<TurnMatch> TurnMatcher::best() const {
   return match;
 }
 
-std::optional<std::string> wrong_rates(const TurnMatch& match) {
-  if (match.correlation < kAgree) return std::nullopt;
+/// Part of a bend, or the ways of a copter, agree with anything at some offset.
+bool TurnMatch::is_enough() const {
+  constexpr int64_t kSamples = 40;
+  constexpr double kTurn = 3.1;  // [rad]; chosen: half a turn in all
+  return samples >= kSamples && turned >= kTurn;
+}
+
+namespace {
+
+std::optional<std::string> wrong_unit(const TurnMatch& match) {
   const double in_degrees = match.slope * kDegree;
   if (std::abs(in_degrees - 1) < 0.2) {
     return std::string("angular rates are in deg/s, not rad/s; name the unit in the import");
@@ -401,22 +409,30 @@ std::optional<std::string> wrong_rates(const TurnMatch& match) {
         "angular rates are pi/180 of those of the course, converted to radians "
         "twice; correct the unit in the import");
   }
-  if (match.gyro_factor && scale_is_wrong(*match.gyro_factor)) {
-    return fmt::format(
-        "the gyroscopes turn {:.3f} (sigma {:.3f}) times as much as the course of GNSS, and no "
-        "gyroscope's scale factor is so far off; correct unit or scale in the import",
-        match.gyro_factor->value, match.gyro_factor->sigma);
-  }
   return std::nullopt;
 }
+
+std::optional<std::string> wrong_scale(const TurnMatch& match) {
+  if (!match.gyro_factor || !scale_is_wrong(*match.gyro_factor)) return std::nullopt;
+  return fmt::format(
+      "the gyroscopes turn {:.3f} (sigma {:.3f}) times as much as the course of GNSS, and no "
+      "gyroscope's scale factor is so far off; correct unit or scale in the import",
+      match.gyro_factor->value, match.gyro_factor->sigma);
+}
+
+}  // namespace
 
 std::optional<std::string> gross_mismatch(const TurnMatch& match, int64_t t_ns) {
   constexpr double kGrossOffset = 1;  // [s]
   if (match.correlation < kAgree) return std::nullopt;
-  if (const std::optional<std::string> wrong = wrong_rates(match)) return wrong;
+  if (const std::optional<std::string> wrong = wrong_unit(match)) return wrong;
+  if (!match.is_enough()) return std::nullopt;
+  if (const std::optional<std::string> wrong = wrong_scale(match)) return wrong;
+  constexpr double kTurn = 6.3;  // [rad]; of so many offsets one agrees by chance with less
   if (std::abs(match.offset_s) < kGrossOffset) return std::nullopt;
   const double leap = gps_utc_offset_s(t_ns);
   const bool is_leap = std::abs(std::abs(match.offset_s) - leap) < 0.5;
+  if (!is_leap && match.turned < kTurn) return std::nullopt;
   return fmt::format(
       "stamps of the IMU are {:.2f} s {} those of GNSS{}; correct time.system or time.offset_s in "
       "the import",

@@ -194,8 +194,8 @@ TEST_F(Complaint, Offsets) {
   EXPECT_EQ(complaints(facts_), "");
   facts_.accelerations.reset();
   EXPECT_EQ(complaints(facts_), "");
-  facts_.turns->offset_s = 0.3;
-  EXPECT_THAT(complaints(facts_), HasSubstr("0.300 s (sigma 0.050) after those of GNSS by turns"));
+  facts_.turns->offset_s = 0.3;  // steps and slip make it
+  EXPECT_EQ(complaints(facts_), "");
 }
 
 TEST_F(Complaint, Turns) {
@@ -204,11 +204,13 @@ TEST_F(Complaint, Turns) {
   facts_.turns->drift->sigma = 100e-6;
   EXPECT_EQ(complaints(facts_), "");
   facts_.turns->offset_s = 7;
+  EXPECT_EQ(complaints(facts_), "");
+  facts_.turns->turned = 7;
   EXPECT_THAT(complaints(facts_), HasSubstr("error time offset: stamps of the IMU are 7.00 s"));
   facts_.turns->correlation = 0.7;
   EXPECT_EQ(complaints(facts_), "");  // as noise makes it
   facts_.turns->misfit = 5;
-  EXPECT_THAT(complaints(facts_), HasSubstr("correlation 0.70 in 100 courses, 5.0 sigmas apart"));
+  EXPECT_EQ(complaints(facts_), "");  // as a copter does
 }
 
 TEST_F(Complaint, Noise) {

@@ -45,7 +45,7 @@ TEST(TurnMatch, FindsTheFactorInGentleTurns) {
   const TurnMatch match = match_of(drive);
   ASSERT_TRUE(match.gyro_factor);
   EXPECT_NEAR(match.gyro_factor->value, 1.3, 0.04);
-  EXPECT_THAT(wrong_rates(match).value_or(""), HasSubstr("no gyroscope's scale factor"));
+  EXPECT_THAT(gross_mismatch(match, 0).value_or(""), HasSubstr("no gyroscope's scale factor"));
 }
 
 TEST(TurnMatch, NamesUnitsAxesAndClocks) {
@@ -154,7 +154,7 @@ TEST(TurnMatch, WhatDoesNotCorrelateIsNotJudged) {
   TurnMatch match;
   match.correlation = 0.5;
   match.slope = 57.3;
-  EXPECT_FALSE(wrong_rates(match));
+  EXPECT_FALSE(gross_mismatch(match, 0));
   EXPECT_FALSE(gross_mismatch(match, 0));
 }
 

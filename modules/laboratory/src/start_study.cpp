@@ -1,6 +1,7 @@
 #include "foucault/laboratory/start_study.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -137,6 +138,8 @@ class HeadingMeter : public state::Sink {
     outcome_.headings.push_back({age, error, heading_sigma_of(epoch)});
   }
 
+  void warning(const state::Notice& notice) override { outcome_.warnings.push_back(notice.text); }
+
  private:
   const SimulatedSource& source_;
   StartOutcome& outcome_;
@@ -184,7 +187,7 @@ evaluation::TextTable start_table(const std::vector<StartOutcome>& outcomes) {
   evaluation::TextTable table;
   table.title = "Starts";
   table.header = {"seed",         "start",        "bound_60_deg", "bound_120_deg", "right",
-                  "error_60_deg", "sigma_60_deg", "worst_sigmas", "refusal"};
+                  "error_60_deg", "sigma_60_deg", "worst_sigmas", "refusal",       "warnings"};
   for (const StartOutcome& o : outcomes) {
     const bool known = !o.headings.empty();
     const auto degrees = [&](double angle) {
@@ -195,14 +198,15 @@ evaluation::TextTable start_table(const std::vector<StartOutcome>& outcomes) {
          fmt::format("{:.3f}", o.bound_120_s / kDegree), o.is_right() ? "yes" : "no",
          known ? degrees(o.headings.front().error) : "",
          known ? degrees(o.headings.front().sigma) : "",
-         known ? fmt::format("{:.2f}", o.worst_normalized()) : "", o.refusal});
+         known ? fmt::format("{:.2f}", o.worst_normalized()) : "", o.refusal,
+         fmt::format("{}", fmt::join(o.warnings, "; "))});
   }
   return table;
 }
 
 evaluation::TextTable start_summary(const std::vector<StartOutcome>& outcomes) {
   struct Sum {
-    int all = 0, determined = 0, started = 0, right = 0, within = 0, compared = 0;
+    int all = 0, determined = 0, started = 0, right = 0, within = 0, compared = 0, warned = 0;
     double squares = 0, worst = 0;
   };
   std::map<std::string, Sum> sums;
@@ -213,6 +217,7 @@ evaluation::TextTable start_summary(const std::vector<StartOutcome>& outcomes) {
       s.determined += o.determined() ? 1 : 0;
       s.started += o.started() ? 1 : 0;
       s.right += o.is_right() ? 1 : 0;
+      s.warned += o.warnings.empty() ? 0 : 1;
       s.worst = std::max(s.worst, o.worst_normalized());
       for (const StartOutcome::Heading& h : o.headings) {
         const double square = std::pow(h.error / h.sigma, 2);
@@ -224,14 +229,14 @@ evaluation::TextTable start_summary(const std::vector<StartOutcome>& outcomes) {
   }
   evaluation::TextTable table;
   table.title = "Random starts";
-  table.header = {"vehicle", "starts",       "determined",     "begun",
-                  "right",   "heading NEES", "within 4 sigma", "worst"};
+  table.header = {"vehicle",      "starts",         "determined", "begun",         "right",
+                  "heading NEES", "within 4 sigma", "worst",      "false warnings"};
   for (const auto& [kind, s] : sums) {
     table.rows.push_back({kind, fmt::format("{}", s.all), fmt::format("{}", s.determined),
                           fmt::format("{}", s.started), fmt::format("{}", s.right),
                           fmt::format("{:.2f}", s.squares / std::max(1, s.compared)),
                           fmt::format("{:.1f} %", 100.0 * s.within / std::max(1, s.compared)),
-                          fmt::format("{:.1f}", s.worst)});
+                          fmt::format("{:.1f}", s.worst), fmt::format("{}", s.warned)});
   }
   return table;
 }

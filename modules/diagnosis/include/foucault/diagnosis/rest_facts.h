@@ -19,7 +19,7 @@ struct RestFacts {
   int64_t seconds = 0;
   double gyro_noise_density = 0;   ///< [rad/s/sqrt(Hz)]
   double accel_noise_density = 0;  ///< [m/s^2/sqrt(Hz)]
-  double gyro_mean = 0;            ///< largest axis of the mean rate [rad/s]
+  double gyro_mean = 0;            ///< largest axis of the rate, median over seconds [rad/s]
   /// Differences of neighbouring fixes, less what they move, over what their sigmas make them; 1 if
   /// they are white.
   double fix_scatter = 0;
@@ -67,7 +67,7 @@ class RestWatch {
   Stretch stretch_;
   bool goes_on_ = false;  ///< the stretch follows on rest
   int64_t still_ = 0;     ///< seconds at rest
-  Eigen::Vector3d gyro_sum_ = Eigen::Vector3d::Zero();
+  std::array<FirstValues, 3> gyro_;
   std::array<AllanWatch, 3> allan_{AllanWatch(1), AllanWatch(2), AllanWatch(4)};
   FirstValues scatter_;
 };

@@ -42,6 +42,9 @@ struct TurnMatch {
   /// Growth of the offset [s/s]; none in short recordings.
   std::optional<Measured> drift;
   int64_t samples = 0;  ///< courses compared
+
+  /// For more than whether the unit is right.
+  bool is_enough() const;
 };
 
 /// Compares changes of the course, from positions, with the turn about the vertical that the
@@ -165,8 +168,5 @@ class TurnMatcher {
 /// one line; none if nothing is grossly wrong. `t_ns`: a stamp of the recording, for its leap
 /// seconds.
 std::optional<std::string> gross_mismatch(const TurnMatch& match, int64_t t_ns);
-
-/// The part of it that is certain as soon as there is a TurnMatch: unit or scale of angular rates.
-std::optional<std::string> wrong_rates(const TurnMatch& match);
 
 }  // namespace foucault::diagnosis

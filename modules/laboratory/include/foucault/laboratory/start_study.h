@@ -30,6 +30,7 @@ struct StartOutcome {
     double after_s, error, sigma;
   };
   std::vector<Heading> headings;
+  std::vector<std::string> warnings;  ///< of the recording, of which nothing is wrong
 
   bool determined() const;  ///< the bound is within 10 deg after 120 s
   bool started() const { return refusal.empty(); }
