@@ -183,7 +183,7 @@ TEST_F(SharedData, TimeOffsetsAreFound) {
   import_as_recorded("rtk_car_drive0708_csv", "rtk_car_drive0708");
   EXPECT_NEAR(found_time_offset(), 0.275, 0.05);
   import_as_recorded("kitti_drive0027_oxts", "kitti_drive0027_oxts");
-  EXPECT_NEAR(found_time_offset(), 0, 0.02);
+  EXPECT_NEAR(found_time_offset(), 0.05, 0.03);  // as its README has it
   const std::string set = "sim_i2nav_adis16465/";
   import({"i2nav", "--imu", file(set + "imu.txt.gz"), "--gnss", file(set + "gnss.pos"),
           "--gps-week", "2200", "--lever-arm", "0.1,-0.3,-0.8"});

@@ -45,8 +45,9 @@ struct Patience {
 };
 constexpr Patience kPatience[] = {{120, 10 * kDegree}, {60, 3 * kDegree}, {0, 1 * kDegree}};
 constexpr double kLargestSigma = kPatience[0].sigma;
-constexpr double kApart = 5;  // sigmas between headings that are not the same
-constexpr double kRetry = 5;  // [s] after an attempt that failed
+constexpr double kApart = 5;      // sigmas between headings that are not the same
+constexpr double kHopeless = 25;  // level: five times the sigmas
+constexpr double kRetry = 5;      // [s] after an attempt that failed
 
 std::optional<GivenAngle> given(const std::optional<double>& degrees, double sigma_degrees) {
   if (!degrees) return std::nullopt;
@@ -111,6 +112,7 @@ class Aligner::Impl {
   Impl(const AlignmentOptions& options, const imu::ImuNoise& noise, const state::Mounting& mounting,
        const state::Layout& layout)
       : options_(options),
+        configured_(noise),
         noise_(noise),
         layout_(layout),
         mounting_{mounting.q_v_b.normalized()},
@@ -124,7 +126,7 @@ class Aligner::Impl {
   void add(const GnssFix& fix);
   void add(const ImuIncrement& increment);
   void finish();
-  void restart() { *this = Impl(options_, noise_, mounting_, layout_); }
+  void restart() { *this = Impl(options_, configured_, mounting_, layout_); }
   int64_t earliest_start_ns() const;
   std::string why_not() const;
   std::string why_undecided() const;
@@ -145,6 +147,8 @@ class Aligner::Impl {
   void begin(AlignmentFindings findings, bool at_rest);
 
   void throw_if_turned_over() const;
+  bool beginning_is_wrong() const;
+  void leave_out_first_fix();
   bool prior_is_wrong() const;
   void begin_again();
   double gyro_prior() const;
@@ -161,7 +165,8 @@ class Aligner::Impl {
   double heading_sigma(const Refined& refined) const;
 
   AlignmentOptions options_;
-  imu::ImuNoise noise_;
+  imu::ImuNoise configured_;
+  imu::ImuNoise noise_;  ///< the same, or with wider priors of the biases
   state::Layout layout_;
   state::Mounting mounting_;
   GivenAngles given_;
@@ -176,6 +181,8 @@ class Aligner::Impl {
   std::optional<HeadingBelief> belief_;
   std::optional<state::Epoch> along_course_;  ///< the latest of which the course is known
   std::string failure_;
+  int left_out_ = 0;  ///< first fixes
+  int widened_ = 0;   ///< priors of the biases
 
   GivenStart given_start_;
 
@@ -262,6 +269,8 @@ bool Aligner::Impl::rest_teaches_more() const {
 }
 
 void Aligner::Impl::forget_drive() {
+  noise_ = configured_;
+  widened_ = 0;
   bank_ = HeadingBank(noise_, layout_, mounting_);
   rest_found_.reset();
   belief_.reset();
@@ -349,9 +358,24 @@ void Aligner::Impl::throw_if_turned_over() const {
     throw DataError(wrong_axes(*up));
 }
 
+/// No heading agrees with the fixes, by far: the first of them may be wrong, from which all begin.
+/// If it is not, sigmas are; which shows in others as well.
+bool Aligner::Impl::beginning_is_wrong() const {
+  constexpr int kMost = 5;  // first fixes that are left out
+  return !(belief_->level < kHopeless && std::isfinite(belief_->sigma)) && left_out_ < kMost;
+}
+
+void Aligner::Impl::leave_out_first_fix() {
+  ++left_out_;
+  track_.forget_until(begin_ns_);
+  forget_drive();
+}
+
 /// A bias that is found to be beyond what was thought possible (one in 16000) was not.
 bool Aligner::Impl::prior_is_wrong() const {
   constexpr double kBeyond = 4;  // sigmas
+  constexpr int kMost = 3;       // times: each shows more of it
+  if (widened_ == kMost) return false;
   const state::Epoch& epoch = belief_->best;
   const auto beyond = [&](const Vector3d& bias, const Vector3d& sigma, double prior) {
     return (bias.cwiseAbs().array() > kBeyond * (prior + std::sqrt(belief_->level) * sigma.array()))
@@ -363,14 +387,20 @@ bool Aligner::Impl::prior_is_wrong() const {
 
 /// From the same findings, with priors that what was found lies within. What follows may show more.
 void Aligner::Impl::begin_again() {
-  const state::Epoch& epoch = belief_->best;
-  noise_.gyro_turn_on_sigma =
-      std::max(noise_.gyro_turn_on_sigma, epoch.bias.gyro.cwiseAbs().maxCoeff());
-  noise_.accel_turn_on_sigma =
-      std::max(noise_.accel_turn_on_sigma, epoch.bias.accel.cwiseAbs().maxCoeff());
+  constexpr double kMostGyro = 0.3, kMostAccel = 5;  // [rad/s], [m/s^2]: none has more
+  const state::ImuBias bias = belief_->best.bias;
+  const imu::ImuNoise before = noise_;
+  const int widened_before = widened_;
   const std::optional<FoundRest> rest = rest_found_;
   const RestDetector detector = rest_;
   forget_drive();
+  const auto widened = [](double sigma, const Vector3d& found, double most) {
+    return std::max(sigma, std::min(found.cwiseAbs().maxCoeff(), most));
+  };
+  noise_.gyro_turn_on_sigma = widened(before.gyro_turn_on_sigma, bias.gyro, kMostGyro);
+  noise_.accel_turn_on_sigma = widened(before.accel_turn_on_sigma, bias.accel, kMostAccel);
+  widened_ = widened_before + 1;
+  bank_ = HeadingBank(noise_, layout_, mounting_);
   rest_found_ = rest;
   if (rest) {
     begin(*first_findings_, true);
@@ -394,6 +424,7 @@ void Aligner::Impl::decide() {
   const int64_t now_ns = belief_->best.t_ns;
   const double age = seconds_between(begin_ns_, now_ns);
   if (prior_is_wrong()) return begin_again();
+  if (beginning_is_wrong()) return leave_out_first_fix();
   if (now_ns < next_try_ns_) return;
   throw_if_turned_over();
   for (const Patience& patience : kPatience) {
@@ -500,7 +531,7 @@ void Aligner::Impl::note_course() {
 /// Straight and steady motion tells nothing of the heading. Most vehicles go along their nose, some
 /// with leeway: the course is taken if the fixes do not speak against it.
 void Aligner::Impl::start_along_course() {
-  if (!along_course_) return;
+  if (!along_course_ || !(belief_->level < kHopeless)) return;
   const double course = geodesy::azimuth(along_course_->velocity_n);
   const double off = so3::wrap(course - belief_->heading);
   if (std::abs(off) > 2 * std::max(belief_->sigma, kLargestSigma)) return;

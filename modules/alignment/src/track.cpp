@@ -86,6 +86,12 @@ std::vector<GnssFix> Track::first_fixes(double shortest_s, int64_t from_ns) cons
   return fixes;
 }
 
+void Track::forget_until(int64_t t_ns) {
+  while (!steps_.empty() &&
+         std::visit([](const auto& s) { return stamp(s); }, steps_.front()) <= t_ns)
+    steps_.pop_front();
+}
+
 Eigen::Vector3d Track::mean_force_b() const {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   double T = 0;

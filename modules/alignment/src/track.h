@@ -29,6 +29,9 @@ class Track {
   /// Kept fixes from the first one on that are at least `shortest_s` and three together; fewer if
   /// there are no more.
   std::vector<GnssFix> first_fixes(double shortest_s, int64_t from_ns = INT64_MIN) const;
+  /// Forgets what is not later than `t_ns`.
+  void forget_until(int64_t t_ns);
+
   /// Mean specific force over the increments that are kept; zero without.
   Eigen::Vector3d mean_force_b() const;
   /// Of the first increment that is kept, or the end of the last.

@@ -449,6 +449,25 @@ TEST(Alignment, ABiasBeyondItsPriorIsFound) {
   EXPECT_LT(std::abs(heading), 3 * heading_sigma(*outcome.initial));
 }
 
+/// All filters begin from it.
+TEST(Alignment, AWrongFirstFixIsLeftOut) {
+  for (const double rest_s : {0.0, 20.0}) {
+    Sensors sensors = industrial_sensors();
+    sensors.spoil = [](double t, GnssFix& fix) {
+      if (t < 0.5) fix.antenna = geodesy::LocalFrame(fix.antenna).to_geodetic({0, 100, 0});
+    };
+    const Drive drive = rest_s > 0 ? rest_and_drive(rest_s, 0.4) : drive_without_rest(0.4);
+    const DriveSimulator simulator(drive, sensors);
+    const Outcome outcome = align(simulator, sensors, noise_of(sensors, 1e-4, 0.015));
+    ASSERT_TRUE(outcome.initial) << outcome.why_not;
+    const Truth truth = simulator.truth(outcome.initial->t_ns);
+    const double error = heading_error(*outcome.initial, truth, sensors.q_v_b);
+    EXPECT_LT(std::abs(error), 3 * heading_sigma(*outcome.initial)) << rest_s;
+    EXPECT_LT(heading_sigma(*outcome.initial), 5 * kDegree) << rest_s;
+    EXPECT_LT(geodesy::LocalFrame(truth.position).to_local(outcome.initial->position).norm(), 1);
+  }
+}
+
 /// Nothing tells the heading but that most vehicles go along their nose.
 TEST(AlignmentWhileMoving, StraightAndSteadyMotionIsTakenForTheCourse) {
   Sensors sensors = industrial_sensors();

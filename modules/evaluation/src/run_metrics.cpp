@@ -95,7 +95,11 @@ void RunMetricsCollector::epoch(const state::Epoch& epoch) {
   if (states_.given_out == 0) states_.begin_ns = epoch.t_ns;
   last_ns_ = epoch.t_ns;
   ++states_.given_out;
-  if (is_finite(epoch)) return;
+  if (is_finite(epoch)) {
+    const state::VehicleAttitude attitude = state::vehicle_attitude(epoch, mounting_);
+    course_.add(epoch.velocity_n, attitude.euler.heading, attitude.sigma.z());
+    return;
+  }
   if (states_.not_finite == 0) states_.first_not_finite_ns = epoch.t_ns;
   ++states_.not_finite;
 }
@@ -200,7 +204,8 @@ RunMetrics RunMetricsCollector::metrics() const {
   if (m.gnss.rejected_samples > 0) {
     m.gnss.rejected_mean_nis = rejected_nis_sum_ / static_cast<double>(m.gnss.rejected_samples);
   }
-  m.trust = trust_in(m.consistency, states_, aids_);
+  m.trust = trust_in(m.consistency, states_, aids_,
+                     {innovation_.samples + corrected_, rejected_innovation_.samples}, course_);
   compare_with_reference(m);
   return m;
 }

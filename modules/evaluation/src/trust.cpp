@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "foucault/core/constants.h"
 #include "foucault/core/time.h"
 #include "foucault/evaluation/statistics.h"
 
@@ -122,7 +123,50 @@ std::optional<Finding> on_aid(const std::string& name, const AidMetrics& aid) {
                              name, size)};
 }
 
+/// Faults are told by what most of the fixes agree on.
+std::optional<Finding> on_rejected(const FixCount& fixes) {
+  constexpr double kLargestShare = 0.25;  // chosen; good recordings of others have 0.004 at most
+  const int64_t all = fixes.used + fixes.rejected;
+  if (all < kFewestFixes || fixes.rejected <= kLargestShare * static_cast<double>(all))
+    return std::nullopt;
+  return Finding{true, fmt::format("{} of {} fixes do not agree with the others and the IMU: "
+                                   "the lever arm, the axes or the clocks may be wrong; see "
+                                   "`foucault check`",
+                                   fixes.rejected, all)};
+}
+
+std::optional<Finding> on_course(const CourseOffset& course) {
+  constexpr double kLargest = 30 * kDegree;  // chosen: boats and wings drift by 20
+  const std::optional<double> mean = course.mean();
+  if (!mean || std::abs(*mean) < kLargest + 3 * course.sigma()) return std::nullopt;
+  return Finding{false, fmt::format("the vehicle moves {:.0f} deg to the {} of where it points "
+                                    "(heading sigma {:.0f}): unless it does, axes, sign of the "
+                                    "accelerometer or clocks are wrong",
+                                    std::abs(*mean) / kDegree, *mean > 0 ? "right" : "left",
+                                    course.sigma() / kDegree)};
+}
+
 }  // namespace
+
+void CourseOffset::add(const Eigen::Vector3d& velocity_n, double heading, double heading_sigma) {
+  constexpr double kSlowest = 3;  // [m/s]
+  if (!(velocity_n.head<2>().norm() > kSlowest)) return;
+  ++samples_;
+  sum_ += std::polar(1.0, std::atan2(velocity_n.y(), velocity_n.x()) - heading);
+  sigma_sum_ += heading_sigma;
+}
+
+std::optional<double> CourseOffset::mean() const {
+  constexpr int64_t kFewest = 30;
+  constexpr double kOneDirection = 0.8;  // mean length; of a scatter of 38 deg
+  if (samples_ < kFewest || std::abs(sum_) < kOneDirection * static_cast<double>(samples_))
+    return std::nullopt;
+  return std::arg(sum_);
+}
+
+double CourseOffset::sigma() const {
+  return samples_ > 0 ? sigma_sum_ / static_cast<double>(samples_) : 0;
+}
 
 bool is_finite(const state::Epoch& epoch) {
   return std::isfinite(epoch.position.latitude) && std::isfinite(epoch.position.longitude) &&
@@ -131,12 +175,16 @@ bool is_finite(const state::Epoch& epoch) {
          epoch.bias.accel.allFinite() && epoch.covariance.allFinite();
 }
 
-Trust trust_in(const Consistency& consistency, const StateCount& states, const Aids& aids) {
+Trust trust_in(const Consistency& consistency, const StateCount& states, const Aids& aids,
+               const FixCount& fixes, const CourseOffset& course) {
   Trust trust;
   std::vector<std::string> remarks;
-  std::vector<std::optional<Finding>> findings{
-      on_states(states), on_count(consistency.nis), on_size(consistency, states.begin_ns),
-      on_stretches(consistency.stretches, states.begin_ns)};
+  std::vector<std::optional<Finding>> findings{on_states(states),
+                                               on_count(consistency.nis),
+                                               on_size(consistency, states.begin_ns),
+                                               on_stretches(consistency.stretches, states.begin_ns),
+                                               on_rejected(fixes),
+                                               on_course(course)};
   for (const auto& [name, aid] : aids) findings.push_back(on_aid(name, aid));
   for (const std::optional<Finding>& finding : findings) {
     if (!finding) continue;

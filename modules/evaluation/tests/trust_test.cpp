@@ -7,6 +7,7 @@
 #include <limits>
 #include <random>
 
+#include "foucault/core/constants.h"
 #include "foucault/core/time.h"
 #include "foucault/evaluation/run_metrics.h"
 
@@ -109,6 +110,39 @@ TEST(Trust, ASmallSizeOfFewEffectiveInnovationsIsChance) {
   EXPECT_FALSE(trust_in(consistency, {}).trustworthy);
 }
 
+Consistency sound() {
+  Consistency consistency;
+  consistency.nis.samples = 200;
+  consistency.nis.effective_samples = 200;
+  consistency.nis.mean = 3;
+  return consistency;
+}
+
+TEST(Trust, TooManyRejectedFixesCondemn) {
+  EXPECT_TRUE(trust_in(sound(), {}, {}, {200, 60}).trustworthy);
+  const Trust trust = trust_in(sound(), {}, {}, {200, 70});
+  EXPECT_FALSE(trust.trustworthy);
+  EXPECT_THAT(trust.reasons, ElementsAre(HasSubstr("70 of 270 fixes")));
+}
+
+TEST(Trust, ACourseFarFromTheHeadingIsNamed) {
+  const auto moves = [](double angle_deg, double scatter_deg, double speed) {
+    CourseOffset course;
+    for (int i = 0; i < 100; ++i) {
+      const double heading = 0.1 * i;
+      const double azimuth = heading + (angle_deg + (i % 2 ? 1 : -1) * scatter_deg) * kDegree;
+      course.add({speed * std::cos(azimuth), speed * std::sin(azimuth), 0}, heading, 2 * kDegree);
+    }
+    return trust_in(sound(), {}, {}, {}, course);
+  };
+  EXPECT_THAT(moves(175, 10, 10).reasons, ElementsAre(HasSubstr("175 deg to the right")));
+  EXPECT_THAT(moves(-90, 10, 10).reasons, ElementsAre(HasSubstr("90 deg to the left")));
+  EXPECT_TRUE(moves(175, 10, 10).trustworthy) << "a train may be driven from its end";
+  EXPECT_THAT(moves(20, 10, 10).reasons, IsEmpty()) << "leeway";
+  EXPECT_THAT(moves(175, 10, 1).reasons, IsEmpty()) << "too slow for a course";
+  EXPECT_THAT(moves(175, 80, 10).reasons, IsEmpty()) << "in all directions";
+}
+
 TEST(Trust, AWrongStretchIsNamedAWrongPartCondemns) {
   const Trust stretch = MadeUpRun().fixes(600, 1).fixes(30, 4).fixes(600, 1).trust();
   EXPECT_TRUE(stretch.trustworthy);
@@ -137,9 +171,9 @@ TEST(Trust, OneLargeInnovationIsNamedForItself) {
               ElementsAre(HasSubstr("one innovation, 200 s after the start, is 289 times")));
 }
 
-TEST(Trust, RejectedFixesDoNotCondemn) {
+TEST(Trust, SomeRejectedFixesDoNotCondemn) {
   MadeUpRun run;
-  for (int i = 0; i < 300; ++i) run.fixes(1, 1).fix({100, 0, 0}, state::FixVerdict::gated);
+  for (int i = 0; i < 60; ++i) run.fixes(5, 1).fix({100, 0, 0}, state::FixVerdict::gated);
   EXPECT_TRUE(run.trust().trustworthy);
 }
 

@@ -119,6 +119,7 @@ class RunMetricsCollector : public state::Sink {
   state::Mounting mounting_;
   int64_t from_ns_;
   StateCount states_;
+  CourseOffset course_;
   int64_t last_ns_ = 0;
   int64_t used_ = 0;
   int64_t rejected_ = 0;

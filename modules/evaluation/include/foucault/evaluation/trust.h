@@ -1,14 +1,17 @@
 #pragma once
 
+#include <Eigen/Core>
+#include <complex>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 
 #include "foucault/core/consistency.h"
 #include "foucault/state/result.h"
 
-/// Whether a run can be believed, judged from what was kept: the innovations of used fixes and the
-/// states that were given out. How many fixes were rejected does not matter.
+/// Whether a run can be believed, judged from what was kept: the innovations of used fixes, how
+/// many stood out of them, and the states that were given out.
 namespace foucault::evaluation {
 
 /// States that were given out.
@@ -17,6 +20,29 @@ struct StateCount {
   int64_t begin_ns = 0;  ///< stamp of the first
   int64_t not_finite = 0;
   int64_t first_not_finite_ns = 0;
+};
+
+/// Fixes that could be compared with a prediction.
+struct FixCount {
+  int64_t used = 0;
+  int64_t rejected = 0;
+};
+
+/// Courses of a run against its headings.
+class CourseOffset {
+ public:
+  /// Slow epochs have no course. heading_sigma [rad].
+  void add(const Eigen::Vector3d& velocity_n, double heading, double heading_sigma);
+
+  /// That the vehicle moved to the right of where it points [rad], on the mean; none if it did so
+  /// in all directions, or hardly moved.
+  std::optional<double> mean() const;
+  double sigma() const;  ///< of the heading, mean [rad]
+
+ private:
+  int64_t samples_ = 0;
+  std::complex<double> sum_;
+  double sigma_sum_ = 0;
 };
 
 /// Measurements of one kind beside positions.
@@ -36,11 +62,14 @@ bool is_finite(const state::Epoch& epoch);
 /// Of what a run amounts to. The size of innovations is the root of mean NIS / 3, 1 if their
 /// covariances are right.
 /// - Condemned: a size above 3, also of the horizontal components alone, or below 0.3; a state that
-/// is not finite; fewer than ten used fixes.
+/// is not finite; fewer than ten used fixes; more than a quarter of the fixes rejected.
+/// - Named: a course that is 30 deg and more off the heading on the mean, which may be so, or the
+/// axes, the accelerometer's sign or the clocks are wrong.
 /// - Named: a size above 1.5 or below 0.5; a stretch above 3.
 /// - An aid of which ten and more were used by the same bounds upwards.
 /// A size counts only if the mean is outside the band in which that of as many independent
 /// innovations as these are worth lies with 99.9 %.
-Trust trust_in(const Consistency& consistency, const StateCount& states, const Aids& aids = {});
+Trust trust_in(const Consistency& consistency, const StateCount& states, const Aids& aids = {},
+               const FixCount& fixes = {}, const CourseOffset& course = {});
 
 }  // namespace foucault::evaluation
