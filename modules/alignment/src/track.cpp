@@ -26,10 +26,7 @@ std::vector<Step> Track::add(const ImuIncrement& increment) {
   std::vector<Step> complete;
   ImuIncrement rest = increment;
   if (end_ns_ && rest.t_begin_ns > *end_ns_) {  // what is missing goes on as what follows
-    const double stretch = seconds_between(*end_ns_, rest.t_end_ns) / rest.dt();
-    rest.t_begin_ns = *end_ns_;
-    rest.dtheta_b *= stretch;
-    rest.dvel_b *= stretch;
+    rest = imu::begun_at(rest, *end_ns_);
   }
   while (!waiting_.empty() && waiting_.front().t_ns <= rest.t_end_ns) {
     const GnssFix fix = waiting_.front();

@@ -6,7 +6,9 @@
 #include <limits>
 
 #include "foucault/core/error.h"
+#include "foucault/core/time.h"
 #include "foucault/diagnosis/side_facts.h"
+#include "foucault/imu/increments.h"
 
 namespace foucault::diagnosis {
 namespace {
@@ -39,7 +41,11 @@ Plausibility::Plausibility(const Eigen::Quaterniond& q_v_b)
       next_window_look_(kWindowsBetweenLooks),
       next_turn_look_(kSamplesBetweenLooks) {}
 
-void Plausibility::watch(const ImuIncrement& increment) {
+/// Over a few samples that are missing the motion goes on: the matchers add it up.
+void Plausibility::watch(const ImuIncrement& given) {
+  constexpr double kMissing = 0.1;  // [s], the hole at which the matchers begin anew
+  const double gap = now_ns_ > 0 ? seconds_between(now_ns_, given.t_begin_ns) : 0;
+  const ImuIncrement increment = gap > 0 && gap <= kMissing ? imu::begun_at(given, now_ns_) : given;
   now_ns_ = increment.t_end_ns;
   mean_force_.add(increment);
   acceleration_match_.add(increment);

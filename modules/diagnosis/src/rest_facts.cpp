@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "foucault/core/median.h"
 #include "foucault/core/time.h"
 #include "foucault/geodesy/course.h"
 #include "foucault/geodesy/local_frame.h"
@@ -83,15 +84,23 @@ void RestWatch::end_stretch() {
   if (!rests || !goes_on_) {
     for (AllanWatch& allan : allan_) allan.interrupt();
   }
-  if (rests) take(*velocity);
+  if (rests) take_stretch();
   goes_on_ = rests;
   stretch_ = Stretch();
 }
 
-void RestWatch::take(const SteadyWay::Velocity& velocity) {
+/// Fixes may creep; of their steps the median is that, whatever outliers are among them.
+void RestWatch::take_stretch() {
   for (const Second& second : stretch_.seconds) take(second);
+  if (stretch_.steps.empty()) return;
+  std::vector<double> north, east;
   for (const Step& step : stretch_.steps) {
-    const double left = (step.way - step.time * velocity.mean).norm();
+    north.push_back(step.way.x() / step.time);
+    east.push_back(step.way.y() / step.time);
+  }
+  const Eigen::Vector2d velocity(median(north), median(east));
+  for (const Step& step : stretch_.steps) {
+    const double left = (step.way - step.time * velocity).norm();
     scatter_.add(left / step.sigma / 2);  // two fixes, two axes
   }
 }

@@ -111,6 +111,13 @@ class WithBadFixes : public state::Source {
   int fixes_ = 0;
 };
 
+/// Missing samples are no delay: over them the motion goes on.
+TEST(Examination, MissingSamplesMoveNoClock) {
+  const LogFacts facts = facts_of(city(), {{simulation::FaultKind::imu_nan, 200, 100, 0}});
+  ASSERT_TRUE(facts.accelerations.has_value());
+  EXPECT_NEAR(facts.accelerations->offset_s.value, 0, 0.02);
+}
+
 TEST(Examination, FixesThatAreNoPositionsBlindNothingAndAreNamed) {
   WithBadFixes source(std::make_unique<simulation::FaultySource>(
       std::make_unique<simulation::SimulatedSource>(city(), imu::imu_preset("ADIS16465")),

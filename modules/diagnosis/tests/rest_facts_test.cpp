@@ -44,6 +44,21 @@ TEST(RestWatch, FixesScatterAsTheirSigmasSay) {
   EXPECT_NEAR(watch.facts().fix_scatter, 1, 0.15);  // 1.25 * 0.8 / sqrt(390): 3 sigmas
 }
 
+TEST(RestWatch, OutliersAreNoScatter) {
+  RestWatch watch;
+  int fixes = 0;
+  for (Measurement& m : standing(0.01, 200).measurements()) {
+    if (auto* fix = std::get_if<GnssFix>(&m)) {
+      if (++fixes % 10 == 5) fix->antenna.latitude += 20 / 6.4e6;
+      watch.add(*fix);
+    } else if (const auto* i = std::get_if<ImuIncrement>(&m)) {
+      watch.add(*i);
+    }
+  }
+  EXPECT_GT(watch.facts().seconds, 50);
+  EXPECT_LT(watch.facts().fix_scatter, 2);
+}
+
 TEST(RestWatch, AMovingVehicleIsNotAtRest) {
   RestWatch watch;
   LevelDrive().feed(watch);  // straight and steady: only the fixes move

@@ -100,6 +100,15 @@ std::pair<ImuIncrement, ImuIncrement> split(const ImuIncrement& increment, int64
   return {first, second};
 }
 
+ImuIncrement begun_at(const ImuIncrement& increment, int64_t t_ns) {
+  ImuIncrement longer = increment;
+  longer.t_begin_ns = t_ns;
+  const double stretch = longer.dt() / increment.dt();
+  longer.dtheta_b *= stretch;
+  longer.dvel_b *= stretch;
+  return longer;
+}
+
 Eigen::Vector3d rotation_with_coning(const Eigen::Vector3d& previous_dtheta,
                                      const Eigen::Vector3d& dtheta) {
   return dtheta + previous_dtheta.cross(dtheta) / 12;

@@ -25,6 +25,19 @@ ImuSample sample_at(int64_t offset_ns, const Vector3d& gyro = Vector3d(0.1, -0.2
   return {kStart + offset_ns, gyro, accel};
 }
 
+TEST(BegunAt, KeepsTheRates) {
+  ImuIncrement increment;
+  increment.t_begin_ns = kStart;
+  increment.t_end_ns = kStart + 10 * kMillisecond;
+  increment.dtheta_b = Vector3d(0.01, 0, 0);
+  increment.dvel_b = Vector3d(0, 0, -0.1);
+  const ImuIncrement longer = begun_at(increment, kStart - 5 * kMillisecond);
+  EXPECT_EQ(longer.t_end_ns, increment.t_end_ns);
+  EXPECT_NEAR(longer.dt(), 0.015, 1e-12);
+  EXPECT_TRUE(longer.dtheta_b.isApprox(Vector3d(0.015, 0, 0), 1e-12));
+  EXPECT_TRUE(longer.dvel_b.isApprox(Vector3d(0, 0, -0.15), 1e-12));
+}
+
 TEST(Incrementer, IntervalMeanCoversTheIntervalThatEndsAtTheStamp) {
   Incrementer incrementer(SampleKind::interval_mean);
   EXPECT_FALSE(incrementer.add(sample_at(0)));

@@ -57,7 +57,7 @@ class RestWatch {
   bool is_steady() const;
   void lengthen();
   void end_stretch();
-  void take(const SteadyWay::Velocity& velocity);
+  void take_stretch();
   void take(const Second& second);
   RestFacts taken() const;
 

@@ -45,6 +45,9 @@ class Incrementer {
 /// Throws std::invalid_argument unless t_begin < t < t_end.
 std::pair<ImuIncrement, ImuIncrement> split(const ImuIncrement& increment, int64_t t_ns);
 
+/// The same rates from t on, which is before it begins: over samples that are missing.
+ImuIncrement begun_at(const ImuIncrement& increment, int64_t t_ns);
+
 /// Rotation vector of the body over the increment, with the coning term of the previous one.
 /// Paper (15). It takes the two as equally long; see previous_increment_scale().
 Eigen::Vector3d rotation_with_coning(const Eigen::Vector3d& previous_dtheta,
