@@ -74,9 +74,13 @@ void require_all(const GivenAngles& angles) {
 std::string wrong_axes(const std::string& up) {
   return fmt::format(
       "gravity points the wrong way: the IMU's axes say that up is the vehicle's {} axis; correct "
-      "the axes of the import, or give alignment.roll_deg and pitch_deg if the vehicle does stand "
+      "the axes of the import{}, or give alignment.roll_deg and pitch_deg if the vehicle does "
+      "stand "
       "so",
-      up);
+      up,
+      up == "down" ? " or, if `foucault check` finds the accelerometer's sign to be the opposite, "
+                     "that alone (imu.accel_sign)"
+                   : "");
 }
 
 std::string describe(const state::Epoch& epoch, const Quaterniond& q_v_b) {
