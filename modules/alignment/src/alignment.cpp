@@ -47,6 +47,11 @@ constexpr Patience kPatience[] = {{120, 10 * kDegree}, {60, 3 * kDegree}, {0, 1 
 constexpr double kLargestSigma = kPatience[0].sigma;
 constexpr double kApart = 5;      // sigmas between headings that are not the same
 constexpr double kHopeless = 25;  // level: five times the sigmas
+constexpr int kMostLeftOut = 5;   // beginnings; then the sigmas are wrong, which others tell
+/// Twice the sigmas before, by the median of half a way, that a filter has later: a sample or a
+/// bunch of fixes was wrong. Where sigmas are too small, both halves show it.
+constexpr double kUnsettled = 4;
+constexpr int kMostFailures = 3;  // of one beginning
 constexpr double kRetry = 5;      // [s] after an attempt that failed
 
 std::optional<GivenAngle> given(const std::optional<double>& degrees, double sigma_degrees) {
@@ -152,7 +157,7 @@ class Aligner::Impl {
 
   void throw_if_turned_over() const;
   bool beginning_is_wrong() const;
-  void leave_out_first_fix();
+  void leave_out_until(int64_t t_ns);
   bool prior_is_wrong() const;
   void begin_again();
   double gyro_prior() const;
@@ -185,7 +190,8 @@ class Aligner::Impl {
   std::optional<HeadingBelief> belief_;
   std::optional<state::Epoch> along_course_;  ///< the latest of which the course is known
   std::string failure_;
-  int left_out_ = 0;  ///< first fixes
+  int left_out_ = 0;  ///< beginnings
+  int failures_ = 0;  ///< in a row, of this one
   int widened_ = 0;   ///< priors of the biases
 
   GivenStart given_start_;
@@ -363,15 +369,19 @@ void Aligner::Impl::throw_if_turned_over() const {
 }
 
 /// No heading agrees with the fixes, by far: the first of them may be wrong, from which all begin.
-/// If it is not, sigmas are; which shows in others as well.
+/// If it is not, sigmas are; which shows in others as well. Or something on the way was wrong.
 bool Aligner::Impl::beginning_is_wrong() const {
-  constexpr int kMost = 5;  // first fixes that are left out
-  return !(belief_->level < kHopeless && std::isfinite(belief_->sigma)) && left_out_ < kMost;
+  const bool late = seconds_between(begin_ns_, belief_->best.t_ns) > kPatience[1].seconds;
+  const bool torn = late && belief_->settling > kUnsettled;
+  const bool hopeless = !(belief_->level < kHopeless) || !std::isfinite(belief_->sigma);
+  return (torn || hopeless) && left_out_ < kMostLeftOut;
 }
 
-void Aligner::Impl::leave_out_first_fix() {
+/// What comes later may be better.
+void Aligner::Impl::leave_out_until(int64_t t_ns) {
   ++left_out_;
-  track_.forget_until(begin_ns_);
+  failures_ = 0;
+  track_.forget_until(t_ns);
   forget_drive();
 }
 
@@ -428,7 +438,9 @@ void Aligner::Impl::decide() {
   const int64_t now_ns = belief_->best.t_ns;
   const double age = seconds_between(begin_ns_, now_ns);
   if (prior_is_wrong()) return begin_again();
-  if (beginning_is_wrong()) return leave_out_first_fix();
+  if (beginning_is_wrong()) {
+    return leave_out_until(age > kPatience[1].seconds ? now_ns : begin_ns_);
+  }
   if (now_ns < next_try_ns_) return;
   throw_if_turned_over();
   for (const Patience& patience : kPatience) {
@@ -470,6 +482,8 @@ std::optional<state::Epoch> Aligner::Impl::start_from(const state::Epoch& found,
     back.reuse(kReuse * level, noise_);
     epoch = state_in_motion(track_.first_fixes(kLongestVelocity), track_.steps(), back);
   }
+  constexpr double kStillLinear = 1;  // [rad]
+  if (!(epoch.sigma_of(state::block::attitude).maxCoeff() < kStillLinear)) return std::nullopt;
   return with_given_angles(epoch, mounting_.q_v_b, given_);
 }
 
@@ -502,9 +516,13 @@ void Aligner::Impl::conclude(double largest_sigma) {
   const std::vector<Refined> all = refined_candidates(belief_->level);
   if (all.empty()) {
     failure_ = "no state was found from which a filter keeps to the fixes";
+    if (++failures_ >= kMostFailures) leave_out_until(belief_->best.t_ns);
     return;
   }
   const Refined& best = all.front();
+  if (left_out_ < kMostLeftOut && best.settling > kUnsettled) {
+    return leave_out_until(best.start.t_ns + (best.end.t_ns - best.start.t_ns) / 2);
+  }
   const double sigma = heading_sigma(best);
   failure_ = fmt::format("the heading is known to {:.0f} deg only, {:.0f} are needed",
                          sigma / kDegree, kLargestSigma / kDegree);
@@ -512,9 +530,10 @@ void Aligner::Impl::conclude(double largest_sigma) {
   for (const Refined& other : all) {
     const double apart = std::abs(so3::wrap(heading_of(other.end) - heading_of(best.end)));
     const double odds = other.agreement.misfit(best.level) - best.agreement.misfit(best.level);
+    if (apart <= kApart * sigma || odds >= kOdds) continue;
     failure_ =
         fmt::format("headings that are {:.0f} deg apart agree with the fixes", apart / kDegree);
-    if (apart > kApart * sigma && odds < kOdds) return;
+    return;
   }
   const double seconds = seconds_between(best.start.t_ns, best.end.t_ns);
   accept(
@@ -603,6 +622,13 @@ std::string Aligner::Impl::why_not() const {
   if (all_given()) return head + "there are fewer than two fixes within the IMU data";
   if (const std::optional<std::string> up = wrong_up(track_.mean_force_b()))
     return head + wrong_axes(*up);
+  if (left_out_ > 0) {
+    return head + fmt::format(
+                      "{} beginnings were tried, and from none does a filter keep to the "
+                      "fixes: axes, the sign of the accelerometer, clocks, the lever arm or "
+                      "the noise are wrong; see `foucault check`",
+                      left_out_);
+  }
   if (belief_) return head + why_undecided() + remedy;
   if (rest_.established()) {
     return head + "the vehicle rested all the time, which does not tell the heading" + remedy;

@@ -64,6 +64,7 @@ HeadingBelief HeadingBank::belief() const {
   }
   mean /= weights;
   belief.best = all[0].epoch;
+  belief.settling = hypotheses_[all[0].index].trial.settling();
   belief.heading = so3::wrap(all[0].heading + mean);
   belief.sigma = std::sqrt(std::max(square / weights - mean * mean, all[0].variance));
   return belief;

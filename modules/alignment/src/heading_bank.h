@@ -11,10 +11,11 @@ namespace foucault::alignment {
 
 /// What the fixes so far say of the heading.
 struct HeadingBelief {
-  state::Epoch best;   ///< of the likeliest trial
-  double heading = 0;  ///< of the vehicle, mean [rad]
-  double sigma = 0;    ///< of all trials together [rad]
-  double level = 1;    ///< see Trial
+  state::Epoch best;    ///< of the likeliest trial
+  double heading = 0;   ///< of the vehicle, mean [rad]
+  double sigma = 0;     ///< of all trials together [rad]
+  double level = 1;     ///< see Trial
+  double settling = 1;  ///< of the likeliest trial, see there
 };
 
 /// Filters that drive from states which differ in the heading, side by side, each of the width of

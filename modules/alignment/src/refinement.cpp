@@ -32,6 +32,7 @@ Refined drive_over(const state::Epoch& start, const std::deque<Step>& steps,
   }
   result.end = trial.epoch();
   result.level = trial.level();
+  result.settling = trial.settling();
   result.agreement = trial.agreement();
   return result;
 }

@@ -14,6 +14,7 @@ struct Refined {
   state::Epoch end;     ///< of a filter that drives from it over the track
   Agreement agreement;  ///< of that filter
   double level = 1;     ///< see Trial
+  double settling = 1;  ///< see Trial
 };
 
 /// Drives from a start over what follows it.

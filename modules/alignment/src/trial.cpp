@@ -58,8 +58,24 @@ void Trial::use(const measurement::ObservationPtr& observation) {
   if (!left_out_) navigator_.update(observation);
 }
 
-double Trial::level() const {
-  return recent_.size() < kFewest ? 1.0 : std::max(1.0, median(recent_) / kMedian);
+namespace {
+
+double level_of(const std::vector<double>& squares) {
+  return squares.size() < kFewest ? 1.0 : std::max(1.0, median(squares) / kMedian);
+}
+
+}  // namespace
+
+double Trial::level() const { return level_of(recent_); }
+
+double Trial::settling() const {
+  std::vector<double> first = recent_;
+  std::rotate(first.begin(), first.begin() + static_cast<std::ptrdiff_t>(next_ % kRemembered),
+              first.end());
+  const auto middle = first.begin() + static_cast<std::ptrdiff_t>(first.size() / 2);
+  const std::vector<double> second(middle, first.end());
+  first.erase(middle, first.end());
+  return level_of(first) / level_of(second);
 }
 
 }  // namespace foucault::alignment

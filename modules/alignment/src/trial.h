@@ -34,6 +34,8 @@ class Trial {
   /// that of chi-square, at least 1.
   double level() const;
   const Agreement& agreement() const { return agreement_; }
+  /// Level of the first half of the squares that are kept, per that of the second.
+  double settling() const;
 
  private:
   void use(const measurement::ObservationPtr& observation);

@@ -29,6 +29,8 @@ constexpr double kSecondForceLook = 60;  // [s]
 // Chosen: a look goes over all windows or offsets, and little is new to the next.
 constexpr int64_t kWindowsBetweenLooks = 10;
 constexpr int64_t kSamplesBetweenLooks = 20;
+constexpr int64_t kLong = 80;       // courses, twice as many as are enough
+constexpr double kLongTurn = 12.6;  // [rad], two whole turns
 
 }  // namespace
 
@@ -112,8 +114,12 @@ void Plausibility::look_at_turns() {
   if (const std::optional<std::string> wrong = gross_mismatch(*match, now_ns_)) {
     throw DataError(*wrong);
   }
-  if (!match->is_enough() || match->correlation > -kAgree) return;
-  if (const std::optional<WrongForce> side = wrong_side(*match, accelerations(), force().mean)) {
+  const std::optional<AccelerationFit> forces = accelerations();
+  const bool forces_tell = forces && forces->is_side_known;
+  // Outliers turn courses as well, for a while.
+  const bool is_long = match->samples >= kLong && match->turned >= kLongTurn;
+  if (!match->is_enough() || match->correlation > -kAgree || !(forces_tell || is_long)) return;
+  if (const std::optional<WrongForce> side = wrong_side(*match, forces, force().mean)) {
     throw DataError(fmt::format("{}; {}", side->text, side->remedy));
   }
 }
