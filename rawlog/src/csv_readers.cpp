@@ -1,21 +1,18 @@
 #include "csv_readers.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
-#include <ctime>
 #include <deque>
 #include <filesystem>
 
 #include "foucault/core/constants.h"
 #include "foucault/core/error.h"
 #include "foucault/core/so3.h"
-#include "foucault/core/time.h"
-#include "foucault/geodesy/local_frame.h"
+#include "position_columns.h"
+#include "table_units.h"
 
 namespace foucault::rawlog {
 
@@ -25,68 +22,24 @@ namespace {
 
 constexpr double kOpenVerticalSigma = 10;  ///< of a speed along the ground [m/s]
 
-using Roles = std::vector<std::string>;
-
-const Roles kNed{"velocity_north", "velocity_east", "velocity_down"};
-const Roles kNeu{"velocity_north", "velocity_east", "velocity_up"};
-const Roles kGeodetic{"latitude", "longitude", "height"};
-const Roles kLocal{"east", "north", "up"};
+/// What GNSS tables and references have in common.
+const Roles kPosition{"latitude",
+                      "longitude",
+                      "height",
+                      "latitude_minutes",
+                      "latitude_seconds",
+                      "latitude_hemisphere",
+                      "longitude_minutes",
+                      "longitude_seconds",
+                      "longitude_hemisphere",
+                      "east",
+                      "north",
+                      "up"};
 
 Roles joined(std::initializer_list<Roles> parts) {
-  Roles all{"time", "week"};
+  Roles all{"time", "date", "week"};
   for (const Roles& part : parts) all.insert(all.end(), part.begin(), part.end());
   return all;
-}
-
-TextTable::Separator separator_of(const std::string& name) {
-  if (name == "semicolon") return TextTable::Separator::semicolon;
-  if (name == "tab") return TextTable::Separator::tab;
-  if (name == "space") return TextTable::Separator::space;
-  return TextTable::Separator::comma;
-}
-
-/// A header line is data for the table, even behind a comment sign.
-TextTable open_table(const TableMapping& mapping, const std::string& path) {
-  return TextTable(path, separator_of(mapping.separator), mapping.header ? "" : "#%");
-}
-
-std::optional<size_t> column_number(const std::string& name) {
-  size_t number = 0;
-  const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), number);
-  const bool whole = error == std::errc{} && end == name.data() + name.size();
-  return whole && number > 0 ? std::optional(number) : std::nullopt;
-}
-
-Roles header_names(TextTable& table) {
-  const Row* row = table.next();
-  if (row == nullptr) throw DataError(fmt::format("'{}' has no header line", table.path()));
-  Roles names;
-  for (std::string_view field : row->fields()) {
-    while (!field.empty() &&
-           (field.front() == '#' || field.front() == '%' || field.front() == ' ')) {
-      field.remove_prefix(1);
-    }
-    names.emplace_back(field);
-  }
-  return names;
-}
-
-Eigen::Vector3d vector(const Row& row, const std::array<size_t, 3>& columns) {
-  return {row.number(columns[0]), row.number(columns[1]), row.number(columns[2])};
-}
-
-std::array<size_t, 3> three(const Columns& columns, const Roles& roles) {
-  return {columns.of(roles[0]), columns.of(roles[1]), columns.of(roles[2])};
-}
-
-/// Midnight, UTC.
-int64_t parse_date(const std::string& date, const std::string& section) {
-  std::tm utc{};
-  const char* end = strptime(date.c_str(), "%Y-%m-%d", &utc);
-  if (end == nullptr || *end != '\0' || utc.tm_year < 50 || utc.tm_year > 250) {
-    throw UsageError(fmt::format("{}.time.date: '{}' is no date; write YYYY-MM-DD", section, date));
-  }
-  return static_cast<int64_t>(timegm(&utc)) * kNanosecondsPerSecond;
 }
 
 /// Texts of one line, as messages quote them.
@@ -109,135 +62,121 @@ void check_lines(const TableMapping& mapping, const std::string& section) {
   check_line(mapping.file, section + ".file");
 }
 
-template <class Value>
-Value needed(const std::optional<Value>& value, const std::string& section, const char* key,
-             const std::string& system) {
-  if (value) return *value;
-  throw UsageError(
-      fmt::format("{}.time.{} is missing; time system '{}' needs it", section, key, system));
-}
-
-/// Positions of a table: geodetic, or in a local frame with an origin.
-class PositionColumns {
- public:
-  template <class Mapping>
-  PositionColumns(const Mapping& mapping, const Columns& columns, const std::string& path)
-      : local_(columns.has_all(kLocal)),
-        columns_(three(columns, local_ ? kLocal : kGeodetic)),
-        to_radians_(mapping.angle_unit == "deg" ? kDegree : 1),
-        height_offset_(
-            height_offset(mapping.height, mapping.geoid_separation_m, columns.section())) {
-    if (local_) frame_.emplace(origin_of(mapping.origin, columns.section(), path));
-  }
-
-  Geodetic position(const Row& row) const {
-    const Eigen::Vector3d p = vector(row, columns_);
-    if (local_) return frame_->to_geodetic({p.y(), p.x(), -p.z()});
-    return checked_position(row, p.x() * to_radians_, p.y() * to_radians_, p.z() + height_offset_);
-  }
-
- private:
-  static Geodetic origin_of(const OriginMapping& origin, const std::string& section,
-                            const std::string& path) {
-    if (origin.latitude_deg && origin.longitude_deg && origin.height_m) {
-      return {*origin.latitude_deg * kDegree, *origin.longitude_deg * kDegree, *origin.height_m};
-    }
-    throw UsageError(fmt::format(
-        "'{}' has positions in a local frame (east, north, up) and no place on Earth: give "
-        "{}.origin latitude_deg, longitude_deg and height_m (0.1 deg and 100 m are enough)",
-        path, section));
-  }
-
-  bool local_;
-  std::array<size_t, 3> columns_;
-  double to_radians_;
-  double height_offset_;
-  std::optional<geodesy::LocalFrame> frame_;
-};
-
-/// Velocities north, east, down, from three columns.
-class VelocityColumns {
- public:
-  /// None if the mapping has no such columns.
-  static std::optional<VelocityColumns> find(const Columns& columns) {
-    if (columns.has_all(kNed)) return VelocityColumns(three(columns, kNed), 1);
-    if (columns.has_all(kNeu)) return VelocityColumns(three(columns, kNeu), -1);
-    return std::nullopt;
-  }
-
-  Eigen::Vector3d velocity(const Row& row) const {
-    return vector(row, columns_).cwiseProduct(Eigen::Vector3d(1, 1, down_sign_));
-  }
-
- private:
-  VelocityColumns(const std::array<size_t, 3>& columns, double down_sign)
-      : columns_(columns), down_sign_(down_sign) {}
-
-  std::array<size_t, 3> columns_;
-  double down_sign_;
-};
-
 // IMU -------------------------------------------------------------------------------------------
 
 class ImuReader : public RecordReader {
  public:
   ImuReader(const ImuMapping& mapping, const std::string& path)
-      : table_(open_table(mapping, path)),
+      : table_(open_mapped_table(path)),
         columns_(mapping, table_, "imu",
                  joined({{"gyro_x", "gyro_y", "gyro_z", "accel_x", "accel_y", "accel_z",
                           "wheel_speed"}})),
         time_(mapping.time, columns_),
-        gyro_(three(columns_, {"gyro_x", "gyro_y", "gyro_z"})),
-        accel_(three(columns_, {"accel_x", "accel_y", "accel_z"})),
-        gyro_scale_(mapping.gyro_unit == "deg_s" ? kDegree : 1),
-        accel_scale_((mapping.accel_sign == "-1" ? -1 : 1) *
-                     (mapping.accel_unit == "g" ? kStandardGravity : 1)) {
-    if (columns_.has("wheel_speed")) wheel_speed_ = columns_.of("wheel_speed");
-  }
+        gyro_{three(columns_, {"gyro_x", "gyro_y", "gyro_z"}), mapping.gyro_scale,
+              unit_of(rate_units(), mapping.gyro_unit)},
+        accel_{three(columns_, {"accel_x", "accel_y", "accel_z"}),
+               (mapping.accel_sign == "-1" ? -1 : 1) * mapping.accel_scale,
+               unit_of(acceleration_units(), mapping.accel_unit)},
+        wheel_speed_(columns_.find("wheel_speed")),
+        wheel_factor_(unit_of(speed_units(), mapping.wheel_speed_unit).factor) {}
 
   const TextTable& table() const override { return table_; }
+  int64_t without_fix() const override { return blank_; }
 
   std::optional<Record> next() override {
-    if (pending_) {
-      const imu::ImuSample sample = *pending_;
-      pending_.reset();
-      return sample;
+    while (ready_.empty()) {
+      const Row* row = table_.next();
+      if (row == nullptr) return std::nullopt;
+      columns_.check_width(*row);
+      if (gyro_.is_blank(*row) && accel_.is_blank(*row)) {
+        ++blank_;
+      } else {
+        take(parse(*row));
+      }
     }
-    const Row* row = table_.next();
-    if (row == nullptr) return std::nullopt;
-    const imu::ImuSample sample = parse(*row);
-    if (!wheel_speed_) return sample;
-    const double speed = row->number(*wheel_speed_);
-    pending_ = sample;
-    return WheelSpeed{sample.t_ns, speed};
+    Record record = std::move(ready_.front());
+    ready_.pop_front();
+    return record;
   }
 
  private:
-  imu::ImuSample parse(const Row& row) {
-    columns_.check_width(row);
-    imu::ImuSample sample;
-    sample.gyro_b = vector(row, gyro_) * gyro_scale_;
-    sample.accel_b = vector(row, accel_) * accel_scale_;
-    if (wheel_speed_) row.number(*wheel_speed_);
-    sample.t_ns = time_.stamp(row);
-    // Of one stamp but another sample: a burst, see BurstStamps.
-    order_.check(row, sample.t_ns,
-                 sample.gyro_b != last_.gyro_b || sample.accel_b != last_.accel_b);
-    last_ = sample;
+  /// A rate, or what came together since the row before.
+  struct Vector {
+    std::array<size_t, 3> columns;
+    double scale;
+    Unit unit;
+
+    bool is_blank(const Row& row) const {
+      return std::all_of(columns.begin(), columns.end(), [&](size_t c) { return row.is_blank(c); });
+    }
+    Eigen::Vector3d value(const Row& row) const {
+      return vector(row, columns) * (scale * unit.factor);
+    }
+    Eigen::Vector3d increment(const Eigen::Vector3d& value, double dt) const {
+      return unit.increment ? value : value * dt;
+    }
+  };
+
+  struct Sample {
+    imu::ImuSample imu;
+    std::optional<double> wheel_speed;
+  };
+
+  bool has_increments() const { return gyro_.unit.increment || accel_.unit.increment; }
+
+  Sample parse(const Row& row) {
+    Sample sample;
+    imu::ImuSample& imu = sample.imu;
+    imu.gyro_b = gyro_.value(row);
+    imu.accel_b = accel_.value(row);
+    if (wheel_speed_) sample.wheel_speed = row.number(*wheel_speed_) * wheel_factor_;
+    imu.t_ns = time_.stamp(row);
+    // Of one stamp but another sample: a burst, see BurstStamps. Increments need their interval.
+    order_.check(row, imu.t_ns,
+                 !has_increments() && (imu.gyro_b != last_.gyro_b || imu.accel_b != last_.accel_b));
+    last_ = imu;
     return sample;
+  }
+
+  void take(const Sample& sample) {
+    if (!has_increments()) return put(sample, sample.imu);
+    const std::optional<int64_t> length_ns = lengths_.ending_at(sample.imu.t_ns);
+    if (!length_ns) {
+      first_ = sample;
+      return;
+    }
+    if (first_) put(*first_, increment(first_->imu, *length_ns));
+    first_.reset();
+    put(sample, increment(sample.imu, *length_ns));
+  }
+
+  ImuIncrement increment(const imu::ImuSample& sample, int64_t length_ns) const {
+    ImuIncrement increment;
+    increment.t_begin_ns = sample.t_ns - length_ns;
+    increment.t_end_ns = sample.t_ns;
+    increment.dtheta_b = gyro_.increment(sample.gyro_b, increment.dt());
+    increment.dvel_b = accel_.increment(sample.accel_b, increment.dt());
+    return increment;
+  }
+
+  void put(const Sample& sample, Record record) {
+    if (sample.wheel_speed) ready_.push_back(WheelSpeed{sample.imu.t_ns, *sample.wheel_speed});
+    ready_.push_back(std::move(record));
   }
 
   TextTable table_;
   Columns columns_;
   TimeColumn time_;
-  std::array<size_t, 3> gyro_;
-  std::array<size_t, 3> accel_;
-  double gyro_scale_;
-  double accel_scale_;
+  Vector gyro_;
+  Vector accel_;
   std::optional<size_t> wheel_speed_;
+  double wheel_factor_;
   StampOrder order_;
   imu::ImuSample last_;
-  std::optional<imu::ImuSample> pending_;
+  IntervalLengths lengths_;
+  std::optional<Sample> first_;  ///< of increments, waits for its length
+  std::deque<Record> ready_;
+  int64_t blank_ = 0;
 };
 
 // GNSS ------------------------------------------------------------------------------------------
@@ -286,35 +225,36 @@ class QualityColumn {
 /// Position sigmas north, east, down of a row.
 class SigmaColumns {
  public:
-  SigmaColumns(const GnssMapping& mapping, const Columns& columns) {
-    static const Roles kThree{"sigma_north", "sigma_east", "sigma_down"};
-    static const Roles kTwo{"sigma_horizontal", "sigma_horizontal", "sigma_vertical"};
-    if (columns.has_all(kThree)) {
-      columns_ = three(columns, kThree);
-    } else if (columns.has_all(kTwo)) {
-      columns_ = three(columns, kTwo);
-    } else if (mapping.sigma_m.size() == 3) {
-      constant_ = Eigen::Vector3d(mapping.sigma_m.data());
-    } else {
-      throw UsageError(
-          "gnss: sigmas are missing; name columns sigma_north, sigma_east, sigma_down "
-          "(or sigma_horizontal, sigma_vertical), or give sigma_m: [north, east, "
-          "down]");
-    }
+  SigmaColumns(const GnssMapping& mapping, const Columns& columns)
+      : factor_(unit_of(length_units(), mapping.sigma_unit).factor) {
+    const bool is_constant = mapping.sigma_m.size() == 3;
+    if (is_constant) constant_ = Eigen::Vector3d(mapping.sigma_m.data());
+    const bool one = !columns.has("sigma_north") && columns.has("sigma_horizontal");
+    columns_ = {columns.find(one ? "sigma_horizontal" : "sigma_north"),
+                columns.find(one ? "sigma_horizontal" : "sigma_east"),
+                columns.find(one ? "sigma_vertical" : "sigma_down")};
+    const bool whole = std::all_of(columns_.begin(), columns_.end(),
+                                   [](const auto& column) { return column.has_value(); });
+    if (whole || is_constant) return;
+    throw UsageError(
+        "gnss: sigmas are missing; name columns sigma_north, sigma_east, sigma_down "
+        "(or sigma_horizontal, sigma_vertical), or give sigma_m: [north, east, "
+        "down]");
   }
 
   Eigen::Matrix3d covariance(const Row& row) const {
-    if (!columns_) return constant_.cwiseAbs2().asDiagonal();
-    Eigen::Vector3d sigma;
+    Eigen::Vector3d sigma = constant_;
     for (size_t i = 0; i < 3; ++i) {
-      sigma[static_cast<int>(i)] = row.sigma((*columns_)[i], "gnss.sigma_m");
+      if (!columns_[i]) continue;
+      sigma[static_cast<int>(i)] = row.sigma(*columns_[i], "gnss.sigma_m") * factor_;
     }
     return sigma.cwiseAbs2().asDiagonal();
   }
 
  private:
-  std::optional<std::array<size_t, 3>> columns_;
-  Eigen::Vector3d constant_ = Eigen::Vector3d::Zero();
+  double factor_;
+  std::array<std::optional<size_t>, 3> columns_;
+  Eigen::Vector3d constant_ = Eigen::Vector3d::Zero();  ///< where there is no column
 };
 
 /// Velocity of a fix with its covariance: a vector, or a speed along a bearing.
@@ -322,16 +262,17 @@ class GnssVelocity {
  public:
   GnssVelocity(const GnssMapping& mapping, const Columns& columns) {
     if (!mapping.velocity) return;
-    vector_ = VelocityColumns::find(columns);
+    vector_ = VelocityColumns::find(mapping, columns);
     if (!vector_ && columns.has("speed") && columns.has("bearing")) {
       speed_ = columns.of("speed");
       bearing_ = columns.of("bearing");
     }
     if (!vector_ && !speed_) return;
-    bearing_scale_ = mapping.angle_unit == "deg" ? kDegree : 1;
-    if (columns.has("sigma_velocity")) {
-      sigma_column_ = columns.of("sigma_velocity");
-    } else if (mapping.velocity_sigma_m_s.size() == 3) {
+    bearing_scale_ = angle_factor(mapping.angle_unit);
+    factor_ = unit_of(speed_units(), mapping.velocity_unit).factor;
+    sigma_column_ = columns.find("sigma_velocity");
+    if (sigma_column_) return;
+    if (mapping.velocity_sigma_m_s.size() == 3) {
       sigma_ = Eigen::Vector3d(mapping.velocity_sigma_m_s.data());
     } else {
       throw UsageError(
@@ -341,22 +282,28 @@ class GnssVelocity {
     }
   }
 
+  /// A row may have none.
   void add_to(GnssFix& fix, const Row& row) const {
-    if (!vector_ && !speed_) return;
+    if ((!vector_ && !speed_) || is_blank(row)) return;
     fix.velocity_n = vector_ ? vector_->velocity(row) : along_ground(row);
     fix.velocity_covariance = sigma(row).cwiseAbs2().asDiagonal();
   }
 
  private:
+  bool is_blank(const Row& row) const {
+    if (sigma_column_ && row.is_blank(*sigma_column_)) return true;
+    return vector_ ? vector_->is_blank(row) : row.is_blank(*speed_) || row.is_blank(bearing_);
+  }
+
   Eigen::Vector3d along_ground(const Row& row) const {
-    const double speed = row.number(*speed_);
+    const double speed = row.number(*speed_) * factor_;
     const double bearing = row.number(bearing_) * bearing_scale_;
     return {speed * std::cos(bearing), speed * std::sin(bearing), 0};
   }
 
   Eigen::Vector3d sigma(const Row& row) const {
     if (!sigma_column_) return sigma_;
-    const double sigma = row.sigma(*sigma_column_, "gnss.velocity_sigma_m_s");
+    const double sigma = row.sigma(*sigma_column_, "gnss.velocity_sigma_m_s") * factor_;
     return {sigma, sigma, speed_ ? kOpenVerticalSigma : sigma};
   }
 
@@ -364,6 +311,7 @@ class GnssVelocity {
   std::optional<size_t> speed_;
   size_t bearing_ = 0;
   double bearing_scale_ = kDegree;
+  double factor_ = 1;
   std::optional<size_t> sigma_column_;
   Eigen::Vector3d sigma_ = Eigen::Vector3d::Zero();
 };
@@ -371,14 +319,12 @@ class GnssVelocity {
 class GnssReader : public RecordReader {
  public:
   GnssReader(const GnssMapping& mapping, const std::string& path)
-      : table_(open_table(mapping, path)),
+      : table_(open_mapped_table(path)),
         columns_(mapping, table_, "gnss",
-                 joined({kGeodetic,
-                         kLocal,
-                         kNed,
-                         {"velocity_up", "speed", "bearing", "sigma_velocity", "sigma_north",
-                          "sigma_east", "sigma_down", "sigma_horizontal", "sigma_vertical",
-                          "quality"}})),
+                 joined({kPosition,
+                         velocity_roles(),
+                         {"speed", "bearing", "sigma_velocity", "sigma_north", "sigma_east",
+                          "sigma_down", "sigma_horizontal", "sigma_vertical", "quality"}})),
         time_(mapping.time, columns_),
         position_(mapping, columns_, path),
         sigma_(mapping, columns_),
@@ -391,7 +337,8 @@ class GnssReader : public RecordReader {
   std::optional<Record> next() override {
     while (const Row* row = table_.next()) {
       columns_.check_width(*row);
-      const std::optional<FixQuality> quality = quality_.quality(*row);
+      const std::optional<FixQuality> quality =
+          position_.is_blank(*row) ? std::nullopt : quality_.quality(*row);
       if (quality) return parse(*row, *quality);
       ++without_fix_;
     }
@@ -426,31 +373,34 @@ class GnssReader : public RecordReader {
 class ReferenceReader : public RecordReader {
  public:
   ReferenceReader(const ReferenceMapping& mapping, const std::string& path)
-      : table_(open_table(mapping, path)),
+      : table_(open_mapped_table(path)),
         columns_(mapping, table_, "reference",
-                 joined({kGeodetic, kLocal, kNed, {"velocity_up", "roll", "pitch", "heading"}})),
+                 joined({kPosition, velocity_roles(), {"roll", "pitch", "heading"}})),
         time_(mapping.time, columns_),
         position_(mapping, columns_, path),
-        velocity_(VelocityColumns::find(columns_)),
-        to_radians_(mapping.angle_unit == "deg" ? kDegree : 1) {
+        velocity_(VelocityColumns::find(mapping, columns_)),
+        to_radians_(angle_factor(mapping.angle_unit)) {
     static const Roles kEuler{"roll", "pitch", "heading"};
     if (columns_.has_all(kEuler)) euler_ = three(columns_, kEuler);
   }
 
   const TextTable& table() const override { return table_; }
+  int64_t without_fix() const override { return blank_; }
 
   std::optional<Record> next() override {
-    const Row* row = table_.next();
-    if (row == nullptr) return std::nullopt;
-    return parse(*row);
+    while (const Row* row = table_.next()) {
+      columns_.check_width(*row);
+      if (!position_.is_blank(*row)) return parse(*row);
+      ++blank_;
+    }
+    return std::nullopt;
   }
 
  private:
   ReferencePose parse(const Row& row) {
-    columns_.check_width(row);
     ReferencePose pose;
     pose.position = position_.position(row);
-    if (velocity_) pose.velocity_n = velocity_->velocity(row);
+    if (velocity_ && !velocity_->is_blank(row)) pose.velocity_n = velocity_->velocity(row);
     if (euler_) {
       const Eigen::Vector3d euler = vector(row, *euler_) * to_radians_;
       pose.q_n_v = so3::from_euler({euler.x(), euler.y(), euler.z()});
@@ -468,77 +418,10 @@ class ReferenceReader : public RecordReader {
   std::optional<std::array<size_t, 3>> euler_;
   double to_radians_;
   StampOrder order_;
+  int64_t blank_ = 0;
 };
 
 }  // namespace
-
-Columns::Columns(const TableMapping& mapping, TextTable& table, const std::string& section,
-                 const Roles& roles)
-    : section_(section) {
-  const Roles header = mapping.header ? header_names(table) : Roles{};
-  width_ = header.size();
-  for (const auto& [role, name] : mapping.columns) {
-    if (std::find(roles.begin(), roles.end(), role) == roles.end()) {
-      throw UsageError(fmt::format("{}.columns: '{}' is no role; known: {}", section, role,
-                                   fmt::join(roles, ", ")));
-    }
-    const auto found = std::find(header.begin(), header.end(), name);
-    const std::optional<size_t> number = column_number(name);
-    if (found != header.end()) {
-      index_[role] = static_cast<size_t>(found - header.begin());
-    } else if (number && (width_ == 0 || *number <= width_)) {
-      index_[role] = *number - 1;
-    } else {
-      throw UsageError(fmt::format(
-          "{}.columns.{}: '{}' has no column '{}'; {}", section, role, table.path(), name,
-          header.empty() ? "without a header give its number from 1"
-                         : fmt::format("it has {}", fmt::join(header, ", "))));
-    }
-  }
-}
-
-bool Columns::has_all(const Roles& roles) const {
-  return std::all_of(roles.begin(), roles.end(), [this](const std::string& r) { return has(r); });
-}
-
-size_t Columns::of(const std::string& role) const {
-  const auto found = index_.find(role);
-  if (found == index_.end()) {
-    throw UsageError(fmt::format("{}.columns.{} is missing; name the column", section_, role));
-  }
-  return found->second;
-}
-
-void Columns::check_width(const Row& row) {
-  if (width_ == 0) width_ = row.size();
-  if (row.size() == width_) return;
-  row.fail(fmt::format("{} columns, {} expected; correct or remove the row", row.size(), width_));
-}
-
-TimeColumn::TimeColumn(const TimeMapping& mapping, const Columns& columns)
-    : time_(columns.of("time")), offset_ns_(nanoseconds(mapping.offset_s)) {
-  static const std::map<std::string, int> kDecimals{{"s", 9}, {"ms", 6}, {"us", 3}, {"ns", 0}};
-  decimals_ = kDecimals.at(mapping.unit);
-  const std::string& system = mapping.system;
-  const std::string& section = columns.section();
-  if (system == "gps_week_sow") {
-    week_column_ = columns.of("week");
-  } else if (system == "gps_sow" || system == "boot") {
-    week_ = std::llround(needed(mapping.gps_week, section, "gps_week", system));
-    if (system == "boot") {
-      origin_ns_ = nanoseconds(needed(mapping.boot_sow, section, "boot_sow", system));
-    }
-  } else if (system != "gps") {
-    gps_ = false;
-    if (system == "seconds_of_day") origin_ns_ = parse_date(mapping.date, section);
-  }
-}
-
-int64_t TimeColumn::stamp(const Row& row) const {
-  const int64_t time_ns = row.scaled(time_, decimals_) + origin_ns_ + offset_ns_;
-  if (!gps_) return checked_stamp(row, time_ns);
-  return gps_stamp(row, week_column_ ? row.integer(*week_column_) : week_, time_ns);
-}
 
 ImportMapping load_mapping(const MappingSource& source) {
   ImportMapping mapping;

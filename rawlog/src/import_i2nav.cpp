@@ -6,7 +6,6 @@
 
 #include "foucault/core/constants.h"
 #include "foucault/core/error.h"
-#include "foucault/core/hole.h"
 #include "foucault/core/so3.h"
 #include "foucault/core/time.h"
 #include "import_run.h"
@@ -46,7 +45,8 @@ Geodetic position(const Row& row, size_t first) {
 class WeekClock {
  public:
   /// `week` holds near `near_sow_ns`.
-  WeekClock(int64_t week, int64_t near_sow_ns) : week_(week), last_ns_(near_sow_ns) {}
+  WeekClock(int64_t week, int64_t near_sow_ns)
+      : week_(week), rolling_(kNanosecondsPerWeek, near_sow_ns) {}
 
   int64_t stamp(const Row& row, size_t column) {
     const int64_t sow_ns = row.scaled(column, kNanosecondDecimals);
@@ -54,20 +54,12 @@ class WeekClock {
       row.fail(fmt::format("second of week {} lies outside 0 to 604800; correct or remove the row",
                            row.text(column)));
     }
-    if (ends_week(last_ns_) && begins_week(sow_ns)) ++week_;
-    if (begins_week(last_ns_) && ends_week(sow_ns)) --week_;
-    last_ns_ = sow_ns;
-    return rawlog::gps_stamp(row, week_, sow_ns);
+    return rawlog::gps_stamp(row, week_, rolling_.unrolled(sow_ns));
   }
 
  private:
-  static bool begins_week(int64_t sow_ns) { return sow_ns < kNanosecondsPerWeek / 4; }
-  static bool ends_week(int64_t sow_ns) {
-    return sow_ns > kNanosecondsPerWeek - kNanosecondsPerWeek / 4;
-  }
-
   int64_t week_;
-  int64_t last_ns_;
+  rawlog::RollingTime rolling_;
 };
 
 class I2navImu : public RecordReader {
@@ -115,20 +107,14 @@ class I2navImu : public RecordReader {
 
   void take(const Row& row) {
     const Sample sample = parse(row);
-    if (!last_) {
-      last_ = sample;
+    const std::optional<int64_t> length_ns = lengths_.ending_at(sample.t_ns);
+    if (!length_ns) {
+      first_ = sample;
       return;
     }
-    const int64_t interval_ns = sample.t_ns - last_->t_ns;
-    if (nominal_ns_ == 0) {
-      nominal_ns_ = interval_ns;
-      put(*last_, interval_ns);
-    }
-    // Samples are missing, or the one before was wrong: what this one covers is one interval.
-    const bool hole = interval_ns <= 0 || is_hole(interval_ns, nominal_ns_);
-    if (!hole) nominal_ns_ = interval_ns;
-    put(sample, nominal_ns_);
-    last_ = sample;
+    if (first_) put(*first_, *length_ns);
+    first_.reset();
+    put(sample, *length_ns);
   }
 
   void put(const Sample& sample, int64_t length_ns) {
@@ -145,8 +131,8 @@ class I2navImu : public RecordReader {
   WeekClock clock_;
   rawlog::StampOrder order_;
   size_t columns_ = 0;
-  std::optional<Sample> last_;
-  int64_t nominal_ns_ = 0;
+  rawlog::IntervalLengths lengths_;
+  std::optional<Sample> first_;  ///< waits for its length
   std::deque<Record> ready_;
 };
 

@@ -8,12 +8,13 @@
 #include "foucault/core/constants.h"
 #include "foucault/core/error.h"
 #include "foucault/core/so3.h"
+#include "table_units.h"
 
 namespace foucault::rawlog {
 
 namespace {
 
-const std::vector<std::string> kAngleUnits{"deg", "rad"};
+const std::vector<std::string> kAngleUnits{"deg", "rad", "ddmm", "e7"};
 const std::vector<std::string> kHeights{"ellipsoidal", "msl"};
 constexpr Range kAnyNumber{};
 constexpr Range kSeconds{-1e9, 1e9};  // some thirty years
@@ -61,8 +62,10 @@ Eigen::Matrix3d axes_matrix(const std::vector<std::string>& axes) {
 }  // namespace
 
 void TimeMapping::fields(ConfigFields& f) {
-  f.text("system", system, {"gps_week_sow", "gps_sow", "gps", "unix", "seconds_of_day", "boot"},
-         "clock of the time column");
+  f.text("system", system,
+         {"gps_week_sow", "gps_sow", "gps", "unix", "iso8601", "seconds_of_day", "boot"},
+         "clock of the time column; iso8601: date and time in UTC or with their zone, in `time` or "
+         "in `date` and `time`");
   f.text("unit", unit, {"s", "ms", "us", "ns"}, "unit of the time column");
   f.optional_number("gps_week", gps_week, {0, 10000}, "GPS week, for gps_sow and boot");
   f.text("date", date, {}, "YYYY-MM-DD, UTC, for seconds_of_day");
@@ -73,16 +76,25 @@ void TimeMapping::fields(ConfigFields& f) {
 
 void TableMapping::fields(ConfigFields& f) {
   f.text("file", file, {}, "relative to the folder of this mapping, or to --data");
-  f.text("separator", separator, {"comma", "semicolon", "tab", "space"}, "between columns");
-  f.flag("header", header, "the first line names the columns");
+  f.text("separator", separator, {"auto", "comma", "semicolon", "tab", "space"},
+         "between columns; auto: by the header");
+  f.text("decimal", decimal, {"auto", "point", "comma"},
+         "sign of decimals; auto: a comma where it separates no columns and no number has a point");
+  f.flag("header", header, "a line before the first row names the columns");
   f.text_map("columns", columns, "role: name in the header, or number from 1");
   f.section("time", time, "clock");
 }
 
 void ImuMapping::fields(ConfigFields& f) {
   TableMapping::fields(f);
-  f.text("gyro_unit", gyro_unit, {"rad_s", "deg_s"}, "unit of the angular rates");
-  f.text("accel_unit", accel_unit, {"m_s2", "g"}, "unit of the specific forces");
+  f.text("gyro_unit", gyro_unit, names_of(rate_units()),
+         "unit of the angular rates; rad and deg: angle increments since the row before");
+  f.text("accel_unit", accel_unit, names_of(acceleration_units()),
+         "unit of the specific forces; m_s: velocity increments since the row before");
+  f.number("gyro_scale", gyro_scale, kPositive, "of raw counts: value times this is in gyro_unit");
+  f.number("accel_scale", accel_scale, kPositive,
+           "of raw counts: value times this is in accel_unit");
+  f.text("wheel_speed_unit", wheel_speed_unit, names_of(speed_units()), "unit of the wheel speed");
   f.text("accel_sign", accel_sign, {"1", "-1"},
          "-1 if an axis that looks up shows -1 g at rest, as phones have it");
   f.texts("axes", axes, "sensor axes that look forward, right, down, e.g. [-x, y, -z]");
@@ -102,13 +114,25 @@ void OriginMapping::fields(ConfigFields& f) {
   f.optional_number("height_m", height_m, kAnyNumber, "of its origin, ellipsoidal [m]");
 }
 
-void GnssMapping::fields(ConfigFields& f) {
+void PositionMapping::fields(ConfigFields& f) {
   TableMapping::fields(f);
-  f.text("angle_unit", angle_unit, kAngleUnits, "unit of latitude and longitude");
+  f.text("angle_unit", angle_unit, kAngleUnits,
+         "unit of angles; of latitude and longitude also ddmm (ddmm.mmmm) and e7 (1e-7 deg)");
   f.text("height", height, kHeights, "what heights count from");
+  f.text("height_unit", height_unit, names_of(length_units()),
+         "unit of the height, or of east, north, up");
+  f.optional_number("height_m", height_m, kAnyNumber,
+                    "height of all rows of a table without one; gnss.sigma_m says how far off [m]");
   f.optional_number("geoid_separation_m", geoid_separation_m, kAnyNumber,
                     "ellipsoidal height = msl + this [m]");
   f.section("origin", origin, "of a local frame east, north, up");
+  f.text("velocity_unit", velocity_unit, names_of(speed_units()),
+         "unit of velocities, speed and their sigma");
+}
+
+void GnssMapping::fields(ConfigFields& f) {
+  PositionMapping::fields(f);
+  f.text("sigma_unit", sigma_unit, names_of(length_units()), "unit of the sigma columns");
   f.numbers("sigma_m", sigma_m, kPositive, "north, east, down, where no column tells [m]");
   f.flag("velocity", velocity, "read the velocity columns");
   f.numbers("velocity_sigma_m_s", velocity_sigma_m_s, kPositive,
@@ -116,15 +140,6 @@ void GnssMapping::fields(ConfigFields& f) {
   f.text("quality", quality, {"unknown", "single", "differential", "ppp", "float_rtk", "fixed_rtk"},
          "of all fixes, where no column tells");
   f.text_map("quality_table", quality_table, "value in the column: quality, or none");
-}
-
-void ReferenceMapping::fields(ConfigFields& f) {
-  TableMapping::fields(f);
-  f.text("angle_unit", angle_unit, kAngleUnits, "unit of all angles");
-  f.text("height", height, kHeights, "what heights count from");
-  f.optional_number("geoid_separation_m", geoid_separation_m, kAnyNumber,
-                    "ellipsoidal height = msl + this [m]");
-  f.section("origin", origin, "of a local frame east, north, up");
 }
 
 void ImportMapping::fields(ConfigFields& f) {

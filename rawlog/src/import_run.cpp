@@ -10,6 +10,7 @@
 
 #include "foucault/core/constants.h"
 #include "foucault/core/error.h"
+#include "foucault/core/hole.h"
 #include "foucault/core/time.h"
 #include "mrpt_convert.h"
 
@@ -208,6 +209,29 @@ void StampOrder::follow(int64_t t_ns) {
     before_jump_ns_.reset();
   }
   last_ns_ = t_ns;
+}
+
+int64_t RollingTime::unrolled(int64_t time_ns) {
+  constexpr int64_t kMostPeriods = 1000;  // keeps sums in range
+  if (last_ns_) {
+    const int64_t next = ends(*last_ns_) && begins(time_ns)   ? periods_ + 1
+                         : begins(*last_ns_) && ends(time_ns) ? periods_ - 1
+                                                              : periods_;
+    if (std::abs(next) <= kMostPeriods) periods_ = next;
+  }
+  last_ns_ = time_ns;
+  return time_ns + periods_ * period_ns_;
+}
+
+std::optional<int64_t> IntervalLengths::ending_at(int64_t t_ns) {
+  const std::optional<int64_t> last_ns = last_ns_;
+  last_ns_ = t_ns;
+  if (!last_ns) return std::nullopt;
+  const int64_t interval_ns = t_ns - *last_ns;
+  if (nominal_ns_ == 0) nominal_ns_ = interval_ns;
+  const bool hole = interval_ns <= 0 || is_hole(interval_ns, nominal_ns_);
+  if (!hole) nominal_ns_ = interval_ns;
+  return nominal_ns_;
 }
 
 ImportSummary run_import(const ImportOptions& options, ImportInputs inputs) {

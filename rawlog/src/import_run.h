@@ -18,7 +18,7 @@ class RecordReader {
   virtual ~RecordReader() = default;
   virtual std::optional<Record> next() = 0;
   virtual const TextTable& table() const = 0;
-  /// Rows in which the receiver says it has no position.
+  /// Rows that have nothing to read: the receiver says it has no position, or the cells are blank.
   virtual int64_t without_fix() const { return 0; }
 };
 
@@ -41,6 +41,36 @@ class StampOrder {
   std::optional<int64_t> last_ns_;
   std::optional<int64_t> before_jump_ns_;
   int since_jump_ = 0;  ///< rows
+};
+
+/// Times that begin again at the end of their week or day.
+class RollingTime {
+ public:
+  explicit RollingTime(int64_t period_ns, std::optional<int64_t> last_ns = {})
+      : period_ns_(period_ns), last_ns_(last_ns) {}
+
+  /// As if they went on, from the period of the first or of `last_ns` on.
+  int64_t unrolled(int64_t time_ns);
+
+ private:
+  bool begins(int64_t time_ns) const { return time_ns < period_ns_ / 4; }
+  bool ends(int64_t time_ns) const { return time_ns > period_ns_ - period_ns_ / 4; }
+
+  int64_t period_ns_;
+  std::optional<int64_t> last_ns_;
+  int64_t periods_ = 0;
+};
+
+/// Lengths of the intervals over which increments were summed, by the stamps of their ends.
+class IntervalLengths {
+ public:
+  /// Of the one that ends there [ns]; none for the first, which is as long as the second. Where
+  /// samples are missing, or the stamp before was wrong, it is one interval.
+  std::optional<int64_t> ending_at(int64_t t_ns);
+
+ private:
+  std::optional<int64_t> last_ns_;
+  int64_t nominal_ns_ = 0;
 };
 
 /// The inputs of an import, ready to be read.

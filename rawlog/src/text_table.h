@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -26,6 +27,8 @@ class Row {
   const std::vector<std::string_view>& fields() const { return fields_; }
   size_t size() const { return fields_.size(); }
   std::string_view text(size_t column) const;
+  /// Whether the cell says that there is no value: nothing, NaN, or a word for it.
+  bool is_blank(size_t column) const;
   /// A finite number. Throws RowError.
   double number(size_t column) const;
   int64_t integer(size_t column) const;
@@ -45,34 +48,48 @@ class Row {
 };
 
 /// Rows of a text file, plain or gzip. Empty lines and those that begin with a comment sign are
-/// left out.
+/// left out; quotes around a field, too.
 class TextTable {
  public:
   enum class Separator { comma, semicolon, tab, space, space_or_comma };
+  /// Sign of decimals; automatic: the comma where it separates no columns and the row has no number
+  /// with a point.
+  enum class Decimal { automatic, point, comma };
 
   /// Throws DataError if the file cannot be opened.
   TextTable(std::string path, Separator separator, std::string comment_signs);
+  /// From the next row on.
+  void read_as(Separator separator, Decimal decimal);
 
   /// The next row; none at the end. Throws DataError if the file is damaged.
   const Row* next();
   /// The next line as it is, comments too.
   std::optional<std::string_view> next_line();
+  /// The lines that come next, this many if there are; they are still to be read.
+  const std::deque<std::string>& preview(size_t lines);
 
   const std::string& path() const { return path_; }
   int64_t line() const { return row_.line_; }
   double progress() const;
 
  private:
-  void cut(std::string_view line);
-  void cut_at(const char* signs, std::string_view line);
+  std::optional<std::string_view> read_line();
+  void turn_decimal_commas();
 
   std::string path_;
   Separator separator_;
+  Decimal decimal_ = Decimal::automatic;
   std::string comment_signs_;
   GzHandle file_;
   double file_size_ = 0;
   std::string buffer_;
+  std::deque<std::string> ahead_;
+  int64_t lines_read_ = 0;
   Row row_;
 };
+
+/// Cuts a line into `fields`, which are views of it.
+void cut(std::string_view line, TextTable::Separator separator,
+         std::vector<std::string_view>& fields);
 
 }  // namespace foucault::rawlog

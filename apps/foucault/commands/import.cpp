@@ -25,7 +25,9 @@ std::string stream_line(const std::string& name, const rawlog::ImportStream& s) 
   std::string line = fmt::format("{:<10} {} from {}, {} .. {} ({:.1f} s)", name, s.written, s.file,
                                  utc_text(s.first_ns), utc_text(s.last_ns),
                                  seconds_between(s.first_ns, s.last_ns));
-  if (s.without_fix > 0) line += fmt::format(", {} rows without a fix", s.without_fix);
+  if (s.without_fix > 0) {
+    line += fmt::format(", {} rows without {}", s.without_fix, name == "GNSS" ? "a fix" : "values");
+  }
   return line;
 }
 

@@ -28,8 +28,8 @@ constexpr double kFactorSigmas = 5;  // one in two million
 constexpr double kOneFactor = 0.05;
 
 /// The unit that makes m/s^2 this many times as large, if it is one of the usual ones. Those of mg
-/// and cm/s^2 are 2 % apart: the nearest.
-std::optional<WrongForce> wrong_unit(double factor) {
+/// and cm/s^2 are 2 % apart: the nearest. Increments over a sample are short by its interval.
+std::optional<WrongForce> wrong_unit(double factor, double interval_s) {
   struct Unit {
     const char* name;
     double per_m_s2;
@@ -40,36 +40,42 @@ std::optional<WrongForce> wrong_unit(double factor) {
   const Unit* nearest =
       std::min_element(std::begin(kUnits), std::end(kUnits),
                        [&](const Unit& a, const Unit& b) { return off(a) < off(b); });
-  if (off(*nearest) >= kRestTolerance) return std::nullopt;
-  return WrongForce{fmt::format("specific force is in {}, not m/s^2", nearest->name),
-                    "name the unit in the import"};
+  if (off(*nearest) < kRestTolerance) {
+    return WrongForce{fmt::format("specific force is in {}, not m/s^2", nearest->name),
+                      "name the unit in the import"};
+  }
+  if (!(interval_s > 0) || std::abs(factor / interval_s - 1) >= kRestTolerance) return std::nullopt;
+  return WrongForce{
+      fmt::format("specific force is in m/s, increments over the {:.4g} s of a sample", interval_s),
+      "name the units of increments in the import (csv: accel_unit: m_s, gyro_unit: rad)"};
 }
 
 /// Units have one factor; without gravity each window has its own, and a sigma of 10 % or more.
-std::optional<WrongForce> wrong_factor(const MeasuredFactor& factor) {
+std::optional<WrongForce> wrong_factor(const MeasuredFactor& factor, double interval_s) {
   if (std::abs(factor.value - 1) <= kLargestError + kFactorSigmas * factor.sigma)
     return std::nullopt;
-  const std::optional<WrongForce> unit = wrong_unit(factor.value);
+  const std::optional<WrongForce> unit = wrong_unit(factor.value, interval_s);
   if (unit && factor.sigma < kOneFactor * factor.value) return unit;
   return WrongForce{
       fmt::format("specific force is {:.3f} (sigma {:.3f}) times what gravity and the motion of "
                   "the fixes make it, {} windows; no accelerometer's scale factor is so far off",
                   factor.value, factor.sigma, factor.samples),
-      "correct unit or scale in the import"};
+      "correct unit or scale in the import (csv: accel_unit, accel_scale)"};
 }
 
 /// Rest has one direction; motion without gravity, which may be as long, has not.
 std::optional<WrongForce> wrong_mean(const ForceFacts& force) {
   constexpr double kOneDirection = 0.9;  // of the length
   const bool rests = force.mean.norm() > kOneDirection * force.length;
-  const std::optional<WrongForce> unit = wrong_unit(force.length / kStandardGravity);
-  if (rests && unit) return unit;
   const bool too_weak = force.length < kWeakest && force.seconds >= kWeakFor;
+  const std::optional<WrongForce> unit =
+      wrong_unit(force.length / kStandardGravity, too_weak ? force.interval_s : 0);
+  if (rests && unit) return unit;
   if (!too_weak && force.length < kStrongest) return std::nullopt;
   return WrongForce{fmt::format("specific force is {:.3g} m/s^2 where gravity is 9.8 (wrong units, "
                                 "or gravity taken out)",
                                 force.length),
-                    "name the unit in the import"};
+                    "name unit or scale in the import (csv: accel_unit, accel_scale)"};
 }
 
 }  // namespace
@@ -78,6 +84,7 @@ void MeanForce::add(const ImuIncrement& increment) {
   sum_b_ += increment.dvel_b;
   length_sum_ += increment.dvel_b.norm();
   time_ += increment.dt();
+  ++samples_;
 }
 
 ForceFacts MeanForce::facts() const {
@@ -86,11 +93,12 @@ ForceFacts MeanForce::facts() const {
   facts.mean = sum_b_ / time_;
   facts.length = length_sum_ / time_;
   facts.seconds = time_;
+  facts.interval_s = time_ / static_cast<double>(samples_);
   return facts;
 }
 
 std::optional<WrongForce> wrong_force(const ForceFacts& force) {
-  if (force.factor) return wrong_factor(*force.factor);
+  if (force.factor) return wrong_factor(*force.factor, force.interval_s);
   return wrong_mean(force);
 }
 

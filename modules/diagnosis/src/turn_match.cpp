@@ -406,8 +406,8 @@ std::optional<std::string> wrong_unit(const TurnMatch& match) {
   }
   if (std::abs(match.slope / kDegree - 1) < 0.2) {
     return std::string(
-        "angular rates are pi/180 of those of the course, converted to radians "
-        "twice; correct the unit in the import");
+        "angular rates are pi/180 of those of the course, converted to radians twice or increments "
+        "over a sample; correct the unit in the import");
   }
   return std::nullopt;
 }

@@ -10,11 +10,12 @@ using ::testing::HasSubstr;
 
 constexpr double kG = 9.80665;
 
-std::string wrong_mean(double length, double seconds = 10) {
+std::string wrong_mean(double length, double seconds = 10, double interval_s = 0.01) {
   ForceFacts facts;
   facts.mean.z() = -length;
   facts.length = length;
   facts.seconds = seconds;
+  facts.interval_s = interval_s;
   const auto wrong = wrong_force(facts);
   return wrong ? wrong->text + "; " + wrong->remedy : "";
 }
@@ -37,6 +38,7 @@ TEST(MeanForce, MeansTheVectorAndItsLength) {
   increment.dvel_b = {0, -3, -4};
   mean.add(increment);
   EXPECT_EQ(mean.facts().seconds, 1);
+  EXPECT_EQ(mean.facts().interval_s, 0.5);
   EXPECT_TRUE(mean.facts().mean.isApprox(Eigen::Vector3d(0, 0, -8)));
   EXPECT_DOUBLE_EQ(mean.facts().length, 10);
 }
@@ -45,6 +47,15 @@ TEST(WrongForce, RestInOtherUnitsIsTold) {
   EXPECT_THAT(wrong_mean(1), HasSubstr("in g, not m/s^2; name the unit"));
   EXPECT_THAT(wrong_mean(1000), HasSubstr("in mg,"));
   EXPECT_THAT(wrong_mean(981), HasSubstr("in cm/s^2,"));
+}
+
+TEST(WrongForce, IncrementsAreTold) {
+  EXPECT_THAT(wrong_mean(0.02 * kG, 61, 0.02), HasSubstr("in m/s, increments over the 0.02 s"));
+  EXPECT_THAT(wrong_mean(0.01 * kG, 61, 0.01), HasSubstr("accel_unit: m_s, gyro_unit: rad"));
+  EXPECT_EQ(wrong_mean(0.02 * kG, 10, 0.02), "");
+  EXPECT_THAT(wrong_mean(0.02 * kG, 61, 0.01), HasSubstr("wrong units"));
+  // In g at 10 Hz, too.
+  EXPECT_THAT(wrong_mean(1, 10, 0.1), HasSubstr("in g, not m/s^2"));
 }
 
 /// Turns of 6 g, a minute of free fall but a few seconds: vehicles do that.

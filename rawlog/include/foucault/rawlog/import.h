@@ -13,6 +13,7 @@
 /// Importers: other people's files -> rawlog. All of them stream, write through RawlogWriter (whole
 /// or not at all) and say in their summary what came in.
 ///
+/// A row in which a merged table has no values (all cells blank or NaN) is counted.
 /// A row that is wrong (number of columns, not a number, NaN, sigma zero or negative, stamp not
 /// after the one before, or far ahead of those that follow) throws DataError with file:line and a
 /// remedy, or is skipped and counted with `skip_bad_rows`. A log whose IMU and GNSS do not overlap
@@ -32,7 +33,7 @@ struct ImportStream {
   int64_t written = 0;
   int64_t skipped = 0;        ///< bad rows (skip_bad_rows)
   std::string first_skipped;  ///< why, with file:line
-  int64_t without_fix = 0;    ///< rows in which the receiver says it has no position
+  int64_t without_fix = 0;    ///< rows that say there is no position, or are blank
   int64_t first_ns = 0;
   int64_t last_ns = 0;
 };

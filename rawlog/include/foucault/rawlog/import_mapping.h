@@ -16,9 +16,11 @@ namespace foucault::rawlog {
 /// How the `time` column becomes a stamp. true time = stamp + offset_s.
 class TimeMapping : public Configurable {
  public:
-  /// gps_week_sow: columns `week` and `time`; gps_sow: seconds of the week `gps_week`;
-  /// gps: seconds since 1980-01-06; unix: seconds since 1970; seconds_of_day: of `date`, UTC;
-  /// boot: since power-up, which was at second `boot_sow` of `gps_week`.
+  /// gps_week_sow: columns `week` and `time`; gps_sow: seconds of the week `gps_week`, which may
+  /// end; gps: seconds since 1980-01-06; unix: seconds since 1970, or as iso8601; iso8601: date and
+  /// time of day in UTC or with their zone, in one column or in `date` and `time`; seconds_of_day:
+  /// of `date`, UTC, or hh:mm:ss, over midnight too; boot: since power-up, which was at second
+  /// `boot_sow` of `gps_week`.
   std::string system = "gps_week_sow";
   std::string unit = "s";  ///< of the `time` column: s | ms | us | ns
   std::optional<double> gps_week;
@@ -33,19 +35,23 @@ class TimeMapping : public Configurable {
 class TableMapping : public Configurable {
  public:
   std::string file;                            ///< relative to the mapping's own folder (or --data)
-  std::string separator = "comma";             ///< comma | semicolon | tab | space
-  bool header = true;                          ///< the first line names the columns
+  std::string separator = "auto";              ///< auto | comma | semicolon | tab | space
+  std::string decimal = "auto";                ///< auto | point | comma
+  bool header = true;                          ///< a line, before the first row, names the columns
   std::map<std::string, std::string> columns;  ///< role -> name in the header, or number from 1
   TimeMapping time;
 
   void fields(ConfigFields& f) override;
 };
 
-/// Roles: time, week, gyro_x, gyro_y, gyro_z, accel_x, accel_y, accel_z, wheel_speed.
+/// Roles: time, date, week, gyro_x, gyro_y, gyro_z, accel_x, accel_y, accel_z, wheel_speed.
 class ImuMapping : public TableMapping {
  public:
-  std::string gyro_unit = "rad_s";  ///< rad_s | deg_s
-  std::string accel_unit = "m_s2";  ///< m_s2 | g (9.80665 m/s^2)
+  std::string gyro_unit = "rad_s";  ///< rad_s | deg_s, or of increments rad | deg
+  std::string accel_unit = "m_s2";  ///< m_s2 | g (9.80665 m/s^2) | mg | cm_s2, or increments m_s
+  double gyro_scale = 1;            ///< value in the column times this is in gyro_unit
+  double accel_scale = 1;
+  std::string wheel_speed_unit = "m_s";
   /// -1: at rest the axis that looks up shows -1 g, as phones have it (CoreMotion).
   std::string accel_sign = "1";
   /// Which sensor axis looks forward, right, down: each x, y or z with a sign. Data stay on the
@@ -67,15 +73,27 @@ class OriginMapping : public Configurable {
   void fields(ConfigFields& f) override;
 };
 
-/// Roles: time, week; latitude, longitude, height, or east, north, up [m] with `origin`;
-/// sigma_north, sigma_east, sigma_down, or sigma_horizontal, sigma_vertical; velocity_north,
-/// velocity_east, velocity_down, or speed, bearing [deg]; sigma_velocity; quality.
-class GnssMapping : public TableMapping {
+/// Positions. Roles: time, date, week; latitude, longitude, height, or east, north, up with
+/// `origin`; latitude_minutes, latitude_seconds, latitude_hemisphere (N or S), and those of the
+/// longitude (E or W).
+class PositionMapping : public TableMapping {
  public:
-  std::string angle_unit = "deg";            ///< of latitude, longitude: deg | rad
+  std::string angle_unit = "deg";            ///< deg | rad; of latitude, longitude: ddmm | e7 too
   std::string height = "ellipsoidal";        ///< ellipsoidal | msl
+  std::string height_unit = "m";             ///< of the height, or of east, north, up
+  std::optional<double> height_m;            ///< for tables without a height
   std::optional<double> geoid_separation_m;  ///< ellipsoidal height = msl + this
   OriginMapping origin;
+  std::string velocity_unit = "m_s";  ///< of all velocity columns
+
+  void fields(ConfigFields& f) override;
+};
+
+/// More roles: sigma_north, sigma_east, sigma_down, or sigma_horizontal, sigma_vertical;
+/// velocity_north, velocity_east, velocity_down, or speed, bearing [deg]; sigma_velocity; quality.
+class GnssMapping : public PositionMapping {
+ public:
+  std::string sigma_unit = "m";            ///< of the columns of positions' sigmas
   std::vector<double> sigma_m;             ///< north, east, down, for files without sigma columns
   bool velocity = true;                    ///< read the velocity columns
   std::vector<double> velocity_sigma_m_s;  ///< north, east, down, without a sigma column
@@ -85,17 +103,8 @@ class GnssMapping : public TableMapping {
   void fields(ConfigFields& f) override;
 };
 
-/// Roles: time, week; latitude, longitude, height, or east, north, up with `origin`;
-/// velocity_north, velocity_east, velocity_down; roll, pitch, heading. Pose of the IMU.
-class ReferenceMapping : public TableMapping {
- public:
-  std::string angle_unit = "deg";  ///< of all angles: deg | rad
-  std::string height = "ellipsoidal";
-  std::optional<double> geoid_separation_m;
-  OriginMapping origin;
-
-  void fields(ConfigFields& f) override;
-};
+/// More roles: velocity_north, velocity_east, velocity_down; roll, pitch, heading. Pose of the IMU.
+class ReferenceMapping : public PositionMapping {};
 
 /// The whole file.
 class ImportMapping : public Configurable {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -14,6 +15,7 @@ struct ForceFacts {
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();  ///< [m/s^2]
   double length = 0;                               ///< mean of its length [m/s^2]
   double seconds = 0;                              ///< that these rest on
+  double interval_s = 0;                           ///< mean of a sample's [s]
   /// Length of the specific force over that of the acceleration by fixes minus gravity, see
   /// ForceMatch.
   std::optional<MeasuredFactor> factor;
@@ -31,6 +33,7 @@ class MeanForce {
   Eigen::Vector3d sum_b_ = Eigen::Vector3d::Zero();
   double length_sum_ = 0;
   double time_ = 0;
+  int64_t samples_ = 0;
 };
 
 struct WrongForce {
