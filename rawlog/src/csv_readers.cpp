@@ -7,7 +7,6 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <ctime>
 #include <deque>
 #include <filesystem>
 
@@ -22,8 +21,6 @@ namespace foucault::rawlog {
 namespace fs = std::filesystem;
 
 namespace {
-
-constexpr double kOpenVerticalSigma = 10;  ///< of a speed along the ground [m/s]
 
 using Roles = std::vector<std::string>;
 
@@ -81,12 +78,9 @@ std::array<size_t, 3> three(const Columns& columns, const Roles& roles) {
 
 /// Midnight, UTC.
 int64_t parse_date(const std::string& date, const std::string& section) {
-  std::tm utc{};
-  const char* end = strptime(date.c_str(), "%Y-%m-%d", &utc);
-  if (end == nullptr || *end != '\0' || utc.tm_year < 50 || utc.tm_year > 250) {
-    throw UsageError(fmt::format("{}.time.date: '{}' is no date; write YYYY-MM-DD", section, date));
-  }
-  return static_cast<int64_t>(timegm(&utc)) * kNanosecondsPerSecond;
+  const std::optional<int64_t> midnight = midnight_ns(date, "%Y-%m-%d");
+  if (midnight) return *midnight;
+  throw UsageError(fmt::format("{}.time.date: '{}' is no date; write YYYY-MM-DD", section, date));
 }
 
 /// Texts of one line, as messages quote them.

@@ -14,6 +14,9 @@
 /// Readers of tables told by a mapping.
 namespace foucault::rawlog {
 
+/// Of the vertical speed where only the one along the ground is known [m/s].
+inline constexpr double kOpenVerticalSigma = 10;
+
 /// Where the roles of a mapping stand in the rows of its file.
 class Columns {
  public:
