@@ -151,8 +151,7 @@ const Row* TextTable::next() {
   while (const std::optional<std::string_view> line = next_line()) {
     const std::string_view text = trimmed(*line);
     if (text.empty() || comment_signs_.find(text.front()) != std::string::npos) continue;
-    cut(*line);
-    return &row_;
+    return &split(*line);
   }
   return nullptr;
 }
@@ -166,11 +165,19 @@ void TextTable::cut_at(const char* signs, std::string_view line) {
   }
 }
 
-void TextTable::cut(std::string_view line) {
+const Row& TextTable::split(std::string_view line) {
   row_.fields_.clear();
-  if (separator_ == Separator::space) return cut_at(" \t\r", line);
-  if (separator_ == Separator::space_or_comma) return cut_at(" \t\r,", line);
-  const char sign = sign_of(separator_);
+  if (separator_ == Separator::space) {
+    cut_at(" \t\r", line);
+  } else if (separator_ == Separator::space_or_comma) {
+    cut_at(" \t\r,", line);
+  } else {
+    cut_at(sign_of(separator_), line);
+  }
+  return row_;
+}
+
+void TextTable::cut_at(char sign, std::string_view line) {
   size_t begin = 0;
   while (true) {
     const size_t end = line.find(sign, begin);

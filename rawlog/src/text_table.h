@@ -57,14 +57,18 @@ class TextTable {
   const Row* next();
   /// The next line as it is, comments too.
   std::optional<std::string_view> next_line();
+  /// A part of the line that came last, as a row.
+  const Row& split(std::string_view line);
 
   const std::string& path() const { return path_; }
   int64_t line() const { return row_.line_; }
   double progress() const;
 
  private:
-  void cut(std::string_view line);
+  /// At runs of any of the signs.
   void cut_at(const char* signs, std::string_view line);
+  /// At each sign.
+  void cut_at(char sign, std::string_view line);
 
   std::string path_;
   Separator separator_;
