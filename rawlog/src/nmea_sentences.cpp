@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -15,6 +16,15 @@ namespace {
 
 constexpr int64_t kNanosecondsPerDay = kSecondsPerDay * kNanosecondsPerSecond;
 constexpr double kKnot = 1852.0 / kSecondsPerHour;  ///< [m/s]
+
+constexpr size_t kAddress = 5;  ///< two letters of the talker (GP, GN, GL ...), three of the type
+
+/// '$' and five capital letters, else it is proprietary or no sentence at all.
+bool has_address(std::string_view sentence) {
+  const std::string_view address = sentence.substr(1, kAddress);
+  return address.size() == kAddress &&
+         std::all_of(address.begin(), address.end(), [](char c) { return c >= 'A' && c <= 'Z'; });
+}
 
 /// Exclusive-or of all between '$' and '*', which two hexadecimal digits behind it tell.
 bool checksum_is_right(std::string_view sentence, size_t star) {
@@ -117,18 +127,31 @@ NmeaSentences::NmeaSentences(const std::string& path)
     : table_(path, TextTable::Separator::comma, "") {}
 
 const Row* NmeaSentences::next() {
-  while (const std::optional<std::string_view> line = table_.next_line()) {
-    const size_t begin = line->rfind('$');
-    if (begin == std::string_view::npos) continue;
-    const std::string_view sentence = line->substr(begin);
-    const size_t star = sentence.rfind('*');
+  while (const std::optional<std::string_view> sentence = next_sentence()) {
+    const size_t star = sentence->find('*');
     ++sentences_;
-    if (star != std::string_view::npos && checksum_is_right(sentence, star)) {
-      return &table_.split(sentence.substr(1, star - 1));
+    if (star != std::string_view::npos && checksum_is_right(*sentence, star)) {
+      return &table_.split(sentence->substr(1, star - 1));
     }
     if (damaged_++ == 0) first_damaged_line_ = table_.line();
   }
   return nullptr;
+}
+
+std::optional<std::string_view> NmeaSentences::next_sentence() {
+  while (true) {
+    const size_t begin = rest_.find('$');
+    if (begin == std::string_view::npos) {
+      const std::optional<std::string_view> line = table_.next_bytes();
+      if (!line) return std::nullopt;
+      rest_ = *line;
+      continue;
+    }
+    const size_t end = std::min(rest_.find('$', begin + 1), rest_.size());
+    const std::string_view sentence = rest_.substr(begin, end - begin);
+    rest_.remove_prefix(end);
+    if (has_address(sentence)) return sentence;
+  }
 }
 
 std::optional<NmeaEpoch> NmeaEpochs::next() {
@@ -153,12 +176,9 @@ void NmeaEpochs::finish() {
   dated_ns_.reset();
 }
 
-/// The address is two letters of the talker (GP, GN, GL, GA, GB ...) and three of the type.
 void NmeaEpochs::take(const Row& row) {
-  constexpr size_t kAddress = 5;
-  const std::string_view address = row.text(0);
-  if (address.size() != kAddress) return;  // proprietary
-  const std::string_view type = address.substr(2);
+  if (row.text(0).size() != kAddress) return;
+  const std::string_view type = row.text(0).substr(2);
   if (type == "GGA" || type == "RMC" || type == "GST") {
     if (!is_blank(row, 1)) return take_timed(type, row);
     if (type == "GGA") ++without_fix_;

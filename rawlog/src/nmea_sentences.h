@@ -31,7 +31,8 @@ struct NmeaEpoch {
   std::optional<Row> row;  ///< of the GGA, for messages only: its fields are gone
 };
 
-/// Sentences with a right checksum, cut into fields; what lies before a '$' is left out.
+/// Sentences with a right checksum, cut into fields. What stands between them is left out: stamps
+/// of a logger, binary messages of the receiver.
 class NmeaSentences {
  public:
   explicit NmeaSentences(const std::string& path);
@@ -44,7 +45,11 @@ class NmeaSentences {
   int64_t first_damaged_line() const { return first_damaged_line_; }
 
  private:
+  /// From '$' on; whether it is right is not checked.
+  std::optional<std::string_view> next_sentence();
+
   TextTable table_;
+  std::string_view rest_;  ///< of the line
   int64_t sentences_ = 0;
   int64_t damaged_ = 0;  ///< checksum wrong or missing
   int64_t first_damaged_line_ = 0;

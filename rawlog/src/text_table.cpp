@@ -6,7 +6,6 @@
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
-#include <cstring>
 #include <filesystem>
 
 namespace foucault::rawlog {
@@ -124,6 +123,12 @@ TextTable::TextTable(std::string path, Separator separator, std::string comment_
 }
 
 std::optional<std::string_view> TextTable::next_line() {
+  const std::optional<std::string_view> line = next_bytes();
+  return line ? std::optional(line->substr(0, line->find('\0'))) : std::nullopt;
+}
+
+std::optional<std::string_view> TextTable::next_bytes() {
+  const z_off_t begin = gztell(file_.get());
   if (gzgets(file_.get(), buffer_.data(), static_cast<int>(buffer_.size())) == nullptr) {
     int error = Z_OK;
     gzerror(file_.get(), &error);
@@ -134,7 +139,7 @@ std::optional<std::string_view> TextTable::next_line() {
     return std::nullopt;
   }
   ++row_.line_;
-  const size_t length = std::strlen(buffer_.data());
+  const auto length = static_cast<size_t>(gztell(file_.get()) - begin);
   if (length + 1 == buffer_.size()) {
     throw DataError(
         fmt::format("{}:{}: the line is longer than {} characters; is this a text file?", path_,

@@ -57,6 +57,8 @@ class TextTable {
   const Row* next();
   /// The next line as it is, comments too.
   std::optional<std::string_view> next_line();
+  /// The same of a file that is not text throughout: next_line() ends a line at a zero byte.
+  std::optional<std::string_view> next_bytes();
   /// A part of the line that came last, as a row.
   const Row& split(std::string_view line);
 

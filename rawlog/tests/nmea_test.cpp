@@ -196,6 +196,18 @@ TEST_F(Nmea, WrongChecksumsAndHeadingsAreCounted) {
   EXPECT_THAT(summary.gnss.notices, Contains(HasSubstr("2 headings")));
 }
 
+TEST_F(Nmea, BinaryMessagesBetweenAndSentencesWithoutALineEach) {
+  using namespace std::string_literals;
+  const std::string binary = "\xB5\x62\x01\x07\0\0$\x10*9\0"s;
+  std::string first = gga("120000.00");
+  first.resize(first.size() - 2);
+  const ImportSummary summary =
+      import(binary + first + rmc("120000.00", "070224") + binary + gga("120001.00") + binary);
+  EXPECT_EQ(summary.gnss.written, 2);
+  EXPECT_EQ(summary.with_velocity, 1);
+  EXPECT_THAT(summary.gnss.notices, ::testing::Each(::testing::Not(HasSubstr("left out"))));
+}
+
 TEST_F(Nmea, WithoutAFixThereIsNone) {
   const ImportSummary summary =
       import(sentence("GPGGA,,,,,,0,,,,M,,M,,") + sentence("GPGGA,115959.00,,,,,0,,,,M,,M,,") +
