@@ -145,19 +145,22 @@ void assume_columns(const std::string& path, const Row& row, PosHeader& header) 
             : "lat/lon/height in degrees");
 }
 
+void read_comment(std::string_view line, PosHeader& header) {
+  if (contains(line, "WGS84/ellipsoidal")) header.height = "ellipsoidal";
+  if (contains(line, "WGS84/geodetic")) header.height = "msl";
+  if (contains(line, "ref pos")) header.base = parse_base(line);
+  for (const Layout& layout : kLayouts) {
+    if (contains(line, std::string(layout.names[0]) + "(")) parse_names(line, header);
+  }
+}
+
 PosHeader read_header(const std::string& path) {
   TextTable table(path, TextTable::Separator::space_or_comma, "");
   PosHeader header;
   while (const std::optional<std::string_view> line = table.next_line()) {
     if (line->empty()) continue;
     if (line->front() != '%') break;
-    if (contains(*line, "WGS84/ellipsoidal")) header.height = "ellipsoidal";
-    if (contains(*line, "WGS84/geodetic")) header.height = "msl";
-    if (contains(*line, "ref pos")) header.base = parse_base(*line);
-    if (contains(*line, "latitude(") || contains(*line, "x-ecef(") ||
-        contains(*line, "e-baseline(")) {
-      parse_names(*line, header);
-    }
+    read_comment(*line, header);
   }
   if (header.layout == nullptr) {
     TextTable rows(path, TextTable::Separator::space_or_comma, "%");
