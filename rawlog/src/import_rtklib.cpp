@@ -210,6 +210,10 @@ int64_t time_of_day_ns(const Row& row) {
 /// +-sqrt(|covariance|), as RTKLIB writes it, to the covariance.
 double signed_square(double root) { return root * std::abs(root); }
 
+bool is_positive(const Eigen::Matrix3d& covariance) {
+  return covariance.allFinite() && covariance.llt().info() == Eigen::Success;
+}
+
 FixQuality quality_of(int64_t q, const Row& row) {
   switch (q) {
     case 1:
@@ -331,7 +335,9 @@ class PosReader : public rawlog::RecordReader {
   }
 
   /// Along the axes of the file: from columns like sdn, sde, sdu and, if there, sdne, sdeu, sdun.
+  /// These are rounded: where small ones do not fit together, sigmas are that much larger.
   Eigen::Matrix3d covariance(const Row& row, const std::string& prefix) const {
+    constexpr double kRounding = 1e-4;
     Eigen::Vector3d sigma;
     for (int i = 0; i < 3; ++i) sigma[i] = row.sigma(column(prefix + header_.layout->axes[i]));
     Eigen::Matrix3d covariance = sigma.cwiseAbs2().asDiagonal();
@@ -342,10 +348,10 @@ class PosReader : public rawlog::RecordReader {
       const int j = (i + 1) % 3;
       covariance(i, j) = covariance(j, i) = signed_square(row.number(*common[i]));
     }
-    if (!covariance.allFinite() || covariance.llt().info() != Eigen::Success) {
-      row.fail("the covariance is not positive; correct or remove the row");
-    }
-    return covariance;
+    if (is_positive(covariance)) return covariance;
+    covariance.diagonal() = (sigma.array() + kRounding).square();
+    if (is_positive(covariance)) return covariance;
+    row.fail("the covariance is not positive; correct or remove the row");
   }
 
   Geodetic position(const Row& row) const {

@@ -719,6 +719,19 @@ TEST_F(RtklibFormats, ABaselineNeedsItsBase) {
   EXPECT_NEAR(std::sqrt(fix.position_covariance(0, 0)), 0.02, 1e-6);
 }
 
+/// sdn 0.2, sde 0.2, sdu 0.7 mm, turned to ECEF at 48.78 N, 9.17 E and rounded: not positive.
+TEST_F(RtklibFormats, RoundedCovariancesAreWidened) {
+  const std::string header =
+      "%  GPST x-ecef(m) y-ecef(m) z-ecef(m) Q ns sdx(m) sdy(m) sdz(m) sdxy(m) sdyz(m) sdzx(m)\n";
+  const std::string place = "2244 36001.00 4157157.2546 671328.4117 4774770.4702 1 9 ";
+  const GnssFix fix = fix_of(header + place + "0.0005 0.0002 0.0005 0.0002 0.0002 0.0005\n");
+  const Eigen::Vector3d sigma = fix.position_covariance.diagonal().cwiseSqrt();
+  EXPECT_LT((sigma - Eigen::Vector3d(2e-4, 2e-4, 7e-4)).cwiseAbs().maxCoeff(), 2.5e-4);
+  scratch_.text_file("a.pos", header + place + "0.05 0.02 0.05 0.02 0.02 0.06\n");
+  EXPECT_THAT(error_of<DataError>([&] { import_rtklib(rtklib_); }),
+              HasSubstr("covariance is not positive"));
+}
+
 TEST_F(RtklibFormats, PlacesAndWeeksThatDoNotExist) {
   const std::string ecef = "%  GPST x-ecef(m) y-ecef(m) z-ecef(m) Q ns sdx(m) sdy(m) sdz(m)\n";
   std::string utc = kRtklibDegreesHeader;
