@@ -20,8 +20,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr double kOpenVerticalSigma = 10;  ///< of a speed along the ground [m/s]
-
 /// What GNSS tables and references have in common.
 const Roles kPosition{"latitude",
                       "longitude",

@@ -2,16 +2,18 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <ctime>
 #include <map>
 
 #include "csv_readers.h"
 #include "foucault/core/constants.h"
 #include "foucault/core/error.h"
 #include "foucault/core/time.h"
+#include "foucault/geodesy/local_frame.h"
+#include "foucault/geodesy/wgs84.h"
 
 namespace foucault::rawlog {
 
@@ -21,37 +23,135 @@ using rawlog::TextTable;
 
 namespace {
 
+/// What stands in the three columns of a position, and along which axes covariances are.
+enum class Positions { geodetic, ecef, baseline };
+
+/// Names of the columns follow from the axes: sdn, sdne, vn, sdvn, sdvne ...
+struct Layout {
+  Positions positions;
+  std::array<const char*, 3> names;
+  std::string_view axes;
+};
+const std::array<Layout, 3> kLayouts{{
+    {Positions::geodetic, {"latitude", "longitude", "height"}, "neu"},
+    {Positions::ecef, {"x-ecef", "y-ecef", "z-ecef"}, "xyz"},
+    {Positions::baseline, {"e-baseline", "n-baseline", "u-baseline"}, "enu"},
+}};
+
 /// What the comment lines at the head of a .pos file say.
 struct PosHeader {
   std::map<std::string, size_t> columns;  ///< name without unit -> column of the rows
-  bool utc = false;
+  const Layout* layout = nullptr;
+  bool dms = false;                   ///< latitude and longitude take three columns each
+  bool utc = false;                   ///< else GPS time
+  int64_t zone_ns = 0;                ///< clock minus UTC
   std::optional<std::string> height;  ///< ellipsoidal | msl
+  std::optional<Geodetic> base;       ///< "ref pos"
+  std::optional<std::string> notice;
 };
+
+constexpr size_t kTimeColumns = 2;
+constexpr size_t kDmsColumns = 3;
+
+void set_columns(const std::vector<std::string_view>& names, PosHeader& header) {
+  size_t column = kTimeColumns;
+  for (const std::string_view title : names) {
+    const size_t unit = title.find('(');
+    const bool dms = title.substr(std::min(unit, title.size()), 3) == "(d'";
+    header.columns[std::string(title.substr(0, unit))] = column;
+    header.dms |= dms;
+    column += dms ? kDmsColumns : 1;
+  }
+  for (const Layout& layout : kLayouts) {
+    if (header.columns.count(layout.names[0]) > 0) header.layout = &layout;
+  }
+}
+
+std::vector<std::string_view> words(std::string_view line) {
+  constexpr const char* kBlanks = " \t\r,%";
+  std::vector<std::string_view> found;
+  size_t begin = line.find_first_not_of(kBlanks);
+  while (begin != std::string_view::npos) {
+    const size_t end = line.find_first_of(kBlanks, begin);
+    found.push_back(line.substr(begin, end - begin));
+    begin = line.find_first_not_of(kBlanks, end);
+  }
+  return found;
+}
 
 /// "%  GPST   latitude(deg) longitude(deg) ...": the time takes two columns in the rows.
 void parse_names(std::string_view line, PosHeader& header) {
-  constexpr size_t kTimeColumns = 2;
-  constexpr const char* kBlanks = " \t\r,%";
-  size_t column = kTimeColumns;
-  size_t begin = line.find_first_not_of(kBlanks);
-  header.utc = line.substr(begin, 3) == "UTC";
-  begin = line.find_first_of(kBlanks, begin);
-  begin = line.find_first_not_of(kBlanks, begin);
-  while (begin != std::string_view::npos) {
-    const size_t end = line.find_first_of(kBlanks, begin);
-    const std::string_view name = line.substr(begin, end - begin);
-    header.columns[std::string(name.substr(0, name.find('(')))] = column++;
-    begin = line.find_first_not_of(kBlanks, end);
+  std::vector<std::string_view> names = words(line);
+  header.utc = names[0] == "UTC" || names[0] == "JST";
+  if (names[0] == "JST") header.zone_ns = 9 * kSecondsPerHour * kNanosecondsPerSecond;
+  names.erase(names.begin());
+  set_columns(names, header);
+}
+
+/// Degrees, minutes, seconds; the sign is that of the degrees, which may be "-0".
+double from_dms(double degrees, double minutes, double seconds) {
+  return std::copysign(std::abs(degrees) + minutes / 60 + seconds / kSecondsPerHour, degrees);
+}
+
+/// "% ref pos   :  52.1  13.2  75.0", or degrees, minutes, seconds; none if it is in ECEF.
+std::optional<Geodetic> parse_base(std::string_view line) {
+  std::vector<double> v;
+  for (const std::string_view word : words(line.substr(line.find(':') + 1))) {
+    double value = 0;
+    const auto read = std::from_chars(word.data(), word.data() + word.size(), value);
+    if (read.ec != std::errc{} || !std::isfinite(value)) return std::nullopt;
+    v.push_back(value);
   }
+  if (v.size() == 7) v = {from_dms(v[0], v[1], v[2]), from_dms(v[3], v[4], v[5]), v[6]};
+  if (v.size() != 3 || std::abs(v[0]) > 90 || std::abs(v[1]) > 360) return std::nullopt;
+  return Geodetic{v[0] * kDegree, v[1] * kDegree, v[2]};
 }
 
 bool contains(std::string_view text, std::string_view part) {
   return text.find(part) != std::string_view::npos;
 }
 
-[[noreturn]] void fail_format(const std::string& path, const std::string& what) {
-  throw DataError(
-      fmt::format("'{}': {}; export with lat/lon/height in degrees, in GPST or UTC", path, what));
+/// The order in which RTKLIB writes its columns, told by their number.
+void assume_columns(const std::string& path, const Row& row, PosHeader& header) {
+  constexpr size_t kDegrees = 15;
+  constexpr size_t kVelocity = 9;
+  constexpr size_t kDms = kDegrees + 2 * (kDmsColumns - 1);
+  const size_t size = row.size();
+  const bool dms = size == kDms || size == kDms + kVelocity;
+  if (!dms && size != kDegrees && size != kDegrees + kVelocity) {
+    throw DataError(
+        fmt::format("'{}' has no header line with the names of the columns, and not the 15 or 24 "
+                    "columns that RTKLIB writes; export with lat/lon/height in degrees and with "
+                    "a header, or use 'import csv'",
+                    path));
+  }
+  const bool ecef =
+      !dms && std::abs(row.number(kTimeColumns)) + std::abs(row.number(kTimeColumns + 1)) > 720;
+  std::vector<std::string_view> names = words(
+      ecef  ? "x-ecef y-ecef z-ecef Q ns sdx sdy sdz sdxy sdyz sdzx age ratio "
+              "vx vy vz sdvx sdvy sdvz sdvxy sdvyz sdvzx"
+      : dms ? "latitude(d'\") longitude(d'\") height Q ns sdn sde sdu sdne sdeu sdun age ratio "
+              "vn ve vu sdvn sdve sdvu sdvne sdveu sdvun"
+            : "latitude longitude height Q ns sdn sde sdu sdne sdeu sdun age ratio "
+              "vn ve vu sdvn sdve sdvu sdvne sdveu sdvun");
+  if (size < kDegrees + kVelocity) names.resize(names.size() - kVelocity);
+  set_columns(names, header);
+  header.notice = fmt::format(
+      "'{}' has no header: read as RTKLIB's {} in GPS time; if its clock was UTC, give "
+      "gnss.time.offset_s (18 since 2017)",
+      path,
+      ecef  ? "x/y/z-ecef"
+      : dms ? "lat/lon/height in degrees, minutes, seconds"
+            : "lat/lon/height in degrees");
+}
+
+void read_comment(std::string_view line, PosHeader& header) {
+  if (contains(line, "WGS84/ellipsoidal")) header.height = "ellipsoidal";
+  if (contains(line, "WGS84/geodetic")) header.height = "msl";
+  if (contains(line, "ref pos")) header.base = parse_base(line);
+  for (const Layout& layout : kLayouts) {
+    if (contains(line, std::string(layout.names[0]) + "(")) parse_names(line, header);
+  }
 }
 
 PosHeader read_header(const std::string& path) {
@@ -60,27 +160,24 @@ PosHeader read_header(const std::string& path) {
   while (const std::optional<std::string_view> line = table.next_line()) {
     if (line->empty()) continue;
     if (line->front() != '%') break;
-    if (contains(*line, "WGS84/ellipsoidal")) header.height = "ellipsoidal";
-    if (contains(*line, "WGS84/geodetic")) header.height = "msl";
-    if (contains(*line, "latitude(deg)")) parse_names(*line, header);
-    if (contains(*line, "latitude(d'")) fail_format(path, "positions in degrees, minutes, seconds");
-    if (contains(*line, "x-ecef")) fail_format(path, "positions in ECEF");
-    if (contains(*line, "e-baseline")) fail_format(path, "positions as a baseline");
-    if (contains(*line, "  JST")) fail_format(path, "times in JST");
+    read_comment(*line, header);
   }
-  if (header.columns.empty()) fail_format(path, "no header line with the names of the columns");
+  if (header.layout == nullptr) {
+    TextTable rows(path, TextTable::Separator::space_or_comma, "%");
+    const Row* row = rows.next();
+    if (row == nullptr) throw DataError(fmt::format("'{}' has no solution in it", path));
+    assume_columns(path, *row, header);
+  }
+  if (header.layout->positions != Positions::geodetic) header.height = "ellipsoidal";
   return header;
 }
 
-/// Days from 1970-01-01 to a date yyyy/mm/dd, as nanoseconds.
+/// Midnight of a date yyyy/mm/dd.
 int64_t date_ns(const Row& row) {
   const std::string date(row.text(0));
-  std::tm day{};
-  const char* end = strptime(date.c_str(), "%Y/%m/%d", &day);
-  if (end == nullptr || *end != '\0' || day.tm_year < 50 || day.tm_year > 250) {
-    row.fail(fmt::format("'{}' is no date; correct or remove the row", date));
-  }
-  return static_cast<int64_t>(timegm(&day)) * kNanosecondsPerSecond;
+  const std::optional<int64_t> midnight = midnight_ns(date, "%Y/%m/%d");
+  if (!midnight) row.fail(fmt::format("'{}' is no date; correct or remove the row", date));
+  return *midnight;
 }
 
 /// Takes a number of [0, end) off the front, and the delimiter behind it; without one, the number
@@ -113,6 +210,10 @@ int64_t time_of_day_ns(const Row& row) {
 /// +-sqrt(|covariance|), as RTKLIB writes it, to the covariance.
 double signed_square(double root) { return root * std::abs(root); }
 
+bool is_positive(const Eigen::Matrix3d& covariance) {
+  return covariance.allFinite() && covariance.llt().info() == Eigen::Success;
+}
+
 FixQuality quality_of(int64_t q, const Row& row) {
   switch (q) {
     case 1:
@@ -132,6 +233,22 @@ FixQuality quality_of(int64_t q, const Row& row) {
   }
 }
 
+/// Where the base of baselines stands: as the mapping says, else as the header does.
+std::optional<geodesy::LocalFrame> base_frame(const PosHeader& header, const OriginMapping& origin,
+                                              const std::string& path) {
+  if (header.layout->positions != Positions::baseline) return std::nullopt;
+  if (origin.latitude_deg && origin.longitude_deg && origin.height_m) {
+    return geodesy::LocalFrame(
+        {*origin.latitude_deg * kDegree, *origin.longitude_deg * kDegree, *origin.height_m});
+  }
+  if (header.base) return geodesy::LocalFrame(*header.base);
+  throw DataError(
+      fmt::format("'{}' has positions as a baseline and no '% ref pos' with the base's latitude, "
+                  "longitude and height; give gnss.origin latitude_deg, longitude_deg, height_m, "
+                  "or export with lat/lon/height",
+                  path));
+}
+
 class PosReader : public rawlog::RecordReader {
  public:
   PosReader(const GnssMapping& mapping, const std::string& path)
@@ -139,10 +256,12 @@ class PosReader : public rawlog::RecordReader {
         header_(read_header(path)),
         height_offset_(rawlog::height_offset(header_.height.value_or(mapping.height),
                                              mapping.geoid_separation_m, "gnss")),
+        base_(base_frame(header_, mapping.origin, path)),
         offset_ns_(nanoseconds(mapping.time.offset_s)),
-        velocity_(mapping.velocity && has("vn") && has("ve") && has("vu")) {
-    for (const char* name : {"latitude", "longitude", "height", "sdn", "sde", "sdu"}) column(name);
-    if (!velocity_ || has("sdvn")) return;
+        velocity_(mapping.velocity && has_all("v")) {
+    for (const char* name : header_.layout->names) column(name);
+    for (const char axis : header_.layout->axes) column(std::string("sd") + axis);
+    if (!velocity_ || has_all("sdv")) return;
     if (mapping.velocity_sigma_m_s.size() != 3) {
       throw UsageError(
           fmt::format("'{}' has velocities without sigmas; give "
@@ -154,6 +273,9 @@ class PosReader : public rawlog::RecordReader {
 
   const TextTable& table() const override { return table_; }
   int64_t without_fix() const override { return without_fix_; }
+  std::vector<std::string> notices() const override {
+    return header_.notice ? std::vector{*header_.notice} : std::vector<std::string>{};
+  }
 
   std::optional<Record> next() override {
     while (const Row* row = table_.next()) {
@@ -172,6 +294,12 @@ class PosReader : public rawlog::RecordReader {
  private:
   bool has(const std::string& name) const { return header_.columns.count(name) > 0; }
 
+  /// Of all three axes.
+  bool has_all(const std::string& prefix) const {
+    const std::string_view axes = header_.layout->axes;
+    return std::all_of(axes.begin(), axes.end(), [&](char axis) { return has(prefix + axis); });
+  }
+
   size_t column(const std::string& name) const {
     const auto found = header_.columns.find(name);
     if (found != header_.columns.end()) return found->second;
@@ -180,44 +308,98 @@ class PosReader : public rawlog::RecordReader {
   }
 
   int64_t stamp(const Row& row) const {
-    if (row.text(0).find('/') == std::string_view::npos) {
-      const int64_t tow_ns = row.scaled(1, kNanosecondDecimals) + offset_ns_;
-      return rawlog::gps_stamp(row, row.integer(0), tow_ns);
-    }
-    const int64_t t_ns = date_ns(row) + time_of_day_ns(row) + offset_ns_;
-    return header_.utc ? rawlog::checked_stamp(row, t_ns)
-                       : rawlog::gps_stamp(row, 0, t_ns - kGpsEpochNs);
+    const bool date = row.text(0).find('/') != std::string_view::npos;
+    // Week and seconds, like the date, are of the clock that the header names.
+    const int64_t week = date ? 0 : row.integer(0);
+    const int64_t tow_ns = offset_ns_ + (date ? date_ns(row) + time_of_day_ns(row) - kGpsEpochNs
+                                              : row.scaled(1, kNanosecondDecimals));
+    if (!header_.utc) return gps_stamp(row, week, tow_ns);
+    const GpsTime clock = checked_gps_time(row, week, tow_ns);
+    return checked_stamp(
+        row, kGpsEpochNs + clock.week * kNanosecondsPerWeek + clock.tow_ns - header_.zone_ns);
   }
 
-  /// North, east, down from columns like sdn, sde, sdu and, if there, sdne, sdeu, sdun.
+  Eigen::Vector3d along_axes(const Row& row, const std::string& prefix) const {
+    const std::string_view axes = header_.layout->axes;
+    return {row.number(column(prefix + axes[0])), row.number(column(prefix + axes[1])),
+            row.number(column(prefix + axes[2]))};
+  }
+
+  /// The column of what two axes have in common; RTKLIB calls sdun sdue where angles are in
+  /// degrees, minutes, seconds.
+  std::optional<size_t> common_column(const std::string& prefix, int from, int to) const {
+    const std::string_view axes = header_.layout->axes;
+    std::string name = prefix + axes[from] + axes[to];
+    if (!has(name) && name == "sdun") name = "sdue";
+    return has(name) ? std::optional(column(name)) : std::nullopt;
+  }
+
+  /// Along the axes of the file: from columns like sdn, sde, sdu and, if there, sdne, sdeu, sdun.
+  /// These are rounded: where small ones do not fit together, sigmas are that much larger.
   Eigen::Matrix3d covariance(const Row& row, const std::string& prefix) const {
-    const Eigen::Vector3d sigma(row.sigma(column(prefix + "n")), row.sigma(column(prefix + "e")),
-                                row.sigma(column(prefix + "u")));
+    constexpr double kRounding = 1e-4;
+    Eigen::Vector3d sigma;
+    for (int i = 0; i < 3; ++i) sigma[i] = row.sigma(column(prefix + header_.layout->axes[i]));
     Eigen::Matrix3d covariance = sigma.cwiseAbs2().asDiagonal();
-    if (!has(prefix + "ne") || !has(prefix + "eu") || !has(prefix + "un")) return covariance;
-    covariance(0, 1) = signed_square(row.number(column(prefix + "ne")));
-    covariance(1, 2) = -signed_square(row.number(column(prefix + "eu")));  // up to down
-    covariance(0, 2) = -signed_square(row.number(column(prefix + "un")));
-    covariance.triangularView<Eigen::StrictlyLower>() = covariance.transpose();
-    if (covariance.determinant() <= 0) {
-      row.fail("the covariance is not positive; correct or remove the row");
+    std::array<std::optional<size_t>, 3> common;
+    for (int i = 0; i < 3; ++i) common[i] = common_column(prefix, i, (i + 1) % 3);
+    if (!common[0] || !common[1] || !common[2]) return covariance;
+    for (int i = 0; i < 3; ++i) {
+      const int j = (i + 1) % 3;
+      covariance(i, j) = covariance(j, i) = signed_square(row.number(*common[i]));
     }
-    return covariance;
+    if (is_positive(covariance)) return covariance;
+    covariance.diagonal() = (sigma.array() + kRounding).square();
+    if (is_positive(covariance)) return covariance;
+    row.fail("the covariance is not positive; correct or remove the row");
+  }
+
+  Geodetic position(const Row& row) const {
+    const auto& names = header_.layout->names;
+    if (header_.layout->positions == Positions::geodetic) {
+      return checked_position(row, angle(row, column(names[0])), angle(row, column(names[1])),
+                              row.number(column(names[2])) + height_offset_);
+    }
+    const Eigen::Vector3d p(row.number(column(names[0])), row.number(column(names[1])),
+                            row.number(column(names[2])));
+    constexpr double kNearest = 6e6;
+    constexpr double kFarthest = 1e8;
+    if (p.norm() > kFarthest || (!base_ && p.norm() < kNearest)) {
+      row.fail(
+          fmt::format("{} {:.3f}, {} {:.3f}, {} {:.3f} m are no place on Earth; correct or "
+                      "remove the row",
+                      names[0], p.x(), names[1], p.y(), names[2], p.z()));
+    }
+    return base_ ? base_->to_geodetic({p.y(), p.x(), -p.z()}) : geodesy::wgs84::ecef_to_geodetic(p);
+  }
+
+  double angle(const Row& row, size_t first) const {
+    if (!header_.dms) return row.number(first) * kDegree;
+    return from_dms(row.number(first), row.number(first + 1), row.number(first + 2)) * kDegree;
+  }
+
+  /// Axes of the file to north, east, down of a position.
+  Eigen::Matrix3d to_ned(const Geodetic& position) const {
+    if (header_.layout->positions == Positions::ecef) {
+      return geodesy::wgs84::R_e_n(position.latitude, position.longitude).transpose();
+    }
+    if (!base_) return Eigen::Vector3d(1, 1, -1).asDiagonal();
+    Eigen::Matrix3d enu_to_ned;
+    enu_to_ned << 0, 1, 0, 1, 0, 0, 0, 0, -1;
+    return base_->R_w_n(position).transpose() * enu_to_ned;
   }
 
   GnssFix parse(const Row& row, int64_t q) {
     GnssFix fix;
     fix.quality = q < 0 ? FixQuality::unknown : quality_of(q, row);
-    fix.antenna = rawlog::checked_position(row, row.number(column("latitude")) * kDegree,
-                                           row.number(column("longitude")) * kDegree,
-                                           row.number(column("height")) + height_offset_);
-    fix.position_covariance = covariance(row, "sd");
+    fix.antenna = position(row);
+    const Eigen::Matrix3d R = to_ned(fix.antenna);
+    fix.position_covariance = R * covariance(row, "sd") * R.transpose();
     if (velocity_) {
-      fix.velocity_n = Eigen::Vector3d(row.number(column("vn")), row.number(column("ve")),
-                                       -row.number(column("vu")));
+      fix.velocity_n = R * along_axes(row, "v");
       fix.velocity_covariance = velocity_sigma_
                                     ? Eigen::Matrix3d(velocity_sigma_->cwiseAbs2().asDiagonal())
-                                    : covariance(row, "sdv");
+                                    : R * covariance(row, "sdv") * R.transpose();
     }
     fix.t_ns = stamp(row);
     order_.check(row, fix.t_ns);
@@ -227,6 +409,7 @@ class PosReader : public rawlog::RecordReader {
   TextTable table_;
   PosHeader header_;
   double height_offset_;
+  std::optional<geodesy::LocalFrame> base_;
   int64_t offset_ns_;
   bool velocity_;
   std::optional<Eigen::Vector3d> velocity_sigma_;

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <ctime>
 #include <deque>
 #include <filesystem>
 #include <vector>
@@ -43,6 +44,7 @@ class Input {
   ImportStream summary() const {
     ImportStream summary = summary_;
     summary.without_fix = reader_->without_fix();
+    summary.notices = reader_->notices();
     return summary;
   }
 
@@ -136,9 +138,10 @@ class Output {
   ImportSummary summary_;
 };
 
-Input* earliest(Input& imu, Input& gnss, std::optional<Input>& reference) {
+Input* earliest(std::optional<Input>& imu, Input& gnss, std::optional<Input>& reference) {
   Input* first = nullptr;
-  const std::array<Input*, 3> inputs{&gnss, reference ? &*reference : nullptr, &imu};
+  const std::array<Input*, 3> inputs{&gnss, reference ? &*reference : nullptr,
+                                     imu ? &*imu : nullptr};
   for (Input* input : inputs) {
     if (input == nullptr || input->head() == nullptr) continue;
     if (first == nullptr || stamp(*input->head()) < stamp(*first->head())) first = input;
@@ -164,12 +167,13 @@ void check_overlap(const ImportStream& imu, const ImportStream& other, const cha
 }
 
 void check(const ImportSummary& summary) {
-  check_not_empty(summary.imu, "IMU");
+  const bool has_imu = !summary.imu.file.empty();
+  if (has_imu) check_not_empty(summary.imu, "IMU");
   check_not_empty(summary.gnss, "GNSS");
-  check_overlap(summary.imu, summary.gnss, "GNSS");
+  if (has_imu) check_overlap(summary.imu, summary.gnss, "GNSS");
   if (!summary.reference) return;
   check_not_empty(*summary.reference, "reference");
-  check_overlap(summary.imu, *summary.reference, "reference");
+  if (has_imu) check_overlap(summary.imu, *summary.reference, "reference");
 }
 
 /// The recording itself is what must not get lost.
@@ -237,7 +241,8 @@ std::optional<int64_t> IntervalLengths::ending_at(int64_t t_ns) {
 ImportSummary run_import(const ImportOptions& options, ImportInputs inputs) {
   constexpr int64_t kRecordsPerReport = 2000;
   check_not_an_input(options.out, inputs);
-  Input imu(std::move(inputs.imu), options.skip_bad_rows);
+  std::optional<Input> imu;
+  if (inputs.imu) imu.emplace(std::move(inputs.imu), options.skip_bad_rows);
   Input gnss(std::move(inputs.gnss), options.skip_bad_rows);
   std::optional<Input> reference;
   if (inputs.reference) reference.emplace(std::move(inputs.reference), options.skip_bad_rows);
@@ -246,10 +251,11 @@ ImportSummary run_import(const ImportOptions& options, ImportInputs inputs) {
   int64_t records = 0;
   while (Input* input = earliest(imu, gnss, reference)) {
     output.write(input->take());
-    if (options.progress && ++records % kRecordsPerReport == 0) options.progress(imu.progress());
+    if (options.progress && ++records % kRecordsPerReport == 0)
+      options.progress((imu ? *imu : gnss).progress());
   }
   ImportSummary& summary = output.summary();
-  summary.imu = imu.summary();
+  if (imu) summary.imu = imu->summary();
   summary.gnss = gnss.summary();
   if (reference) summary.reference = reference->summary();
   check(summary);
@@ -277,7 +283,14 @@ int64_t checked_stamp(const Row& row, int64_t t_ns) {
   return t_ns;
 }
 
-int64_t gps_stamp(const Row& row, int64_t week, int64_t tow_ns) {
+std::optional<int64_t> midnight_ns(const std::string& date, const char* format) {
+  std::tm utc{};
+  const char* end = strptime(date.c_str(), format, &utc);
+  if (end == nullptr || *end != '\0' || utc.tm_year < 50 || utc.tm_year > 250) return std::nullopt;
+  return static_cast<int64_t>(timegm(&utc)) * kNanosecondsPerSecond;
+}
+
+GpsTime checked_gps_time(const Row& row, int64_t week, int64_t tow_ns) {
   constexpr int64_t kLastWeek = 10'000;
   int64_t weeks = tow_ns / kNanosecondsPerWeek;
   if (tow_ns % kNanosecondsPerWeek < 0) --weeks;
@@ -286,8 +299,11 @@ int64_t gps_stamp(const Row& row, int64_t week, int64_t tow_ns) {
     row.fail(fmt::format("GPS week {} lies outside 0 to {}; correct or remove the row", full_week,
                          kLastWeek));
   }
-  const GpsTime time{static_cast<int>(full_week), tow_ns - weeks * kNanosecondsPerWeek};
-  return checked_stamp(row, gps_to_unix_ns(time));
+  return {static_cast<int>(full_week), tow_ns - weeks * kNanosecondsPerWeek};
+}
+
+int64_t gps_stamp(const Row& row, int64_t week, int64_t tow_ns) {
+  return checked_stamp(row, gps_to_unix_ns(checked_gps_time(row, week, tow_ns)));
 }
 
 }  // namespace foucault::rawlog

@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "foucault/core/time.h"
 #include "foucault/rawlog/import.h"
@@ -20,6 +21,8 @@ class RecordReader {
   virtual const TextTable& table() const = 0;
   /// Rows that have nothing to read: the receiver says it has no position, or the cells are blank.
   virtual int64_t without_fix() const { return 0; }
+  /// What was assumed or left out, once all is read.
+  virtual std::vector<std::string> notices() const { return {}; }
 };
 
 /// Rows that a stamp far ahead may have in a row, if it is wrong; more are a hole before them.
@@ -75,7 +78,7 @@ class IntervalLengths {
 
 /// The inputs of an import, ready to be read.
 struct ImportInputs {
-  std::unique_ptr<RecordReader> imu;
+  std::unique_ptr<RecordReader> imu;  ///< may be null
   std::unique_ptr<RecordReader> gnss;
   std::unique_ptr<RecordReader> reference;  ///< may be null
   std::string mapping;                      ///< its file, if there is one
@@ -92,7 +95,12 @@ Geodetic checked_position(const Row& row, double latitude, double longitude, dou
 /// The stamp of a row, if it is one that a rawlog can hold. Throws RowError.
 int64_t checked_stamp(const Row& row, int64_t t_ns);
 
+/// Midnight of a date as strptime's `format` has it; none if it is no date of the years 1950 to
+/// 2150.
+std::optional<int64_t> midnight_ns(const std::string& date, const char* format);
+
 /// GPS week and second of week, which may lie outside its week, of a row. Throws RowError.
+GpsTime checked_gps_time(const Row& row, int64_t week, int64_t tow_ns);
 int64_t gps_stamp(const Row& row, int64_t week, int64_t tow_ns);
 
 }  // namespace foucault::rawlog

@@ -7,7 +7,6 @@
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
-#include <cstring>
 #include <filesystem>
 #include <set>
 
@@ -197,6 +196,18 @@ const std::deque<std::string>& TextTable::preview(size_t lines) {
 }
 
 std::optional<std::string_view> TextTable::read_line() {
+  const std::optional<std::string_view> line = read_bytes();
+  return line ? std::optional(line->substr(0, line->find('\0'))) : std::nullopt;
+}
+
+std::optional<std::string_view> TextTable::next_bytes() {
+  const std::optional<std::string_view> line = read_bytes();
+  row_.line_ = lines_read_;
+  return line;
+}
+
+std::optional<std::string_view> TextTable::read_bytes() {
+  const z_off_t begin = gztell(file_.get());
   if (gzgets(file_.get(), buffer_.data(), static_cast<int>(buffer_.size())) == nullptr) {
     int error = Z_OK;
     gzerror(file_.get(), &error);
@@ -207,7 +218,7 @@ std::optional<std::string_view> TextTable::read_line() {
     return std::nullopt;
   }
   ++lines_read_;
-  const size_t length = std::strlen(buffer_.data());
+  const auto length = static_cast<size_t>(gztell(file_.get()) - begin);
   if (length + 1 == buffer_.size()) {
     throw DataError(
         fmt::format("{}:{}: the line is longer than {} characters; is this a text file?", path_,
@@ -224,9 +235,7 @@ const Row* TextTable::next() {
   while (const std::optional<std::string_view> line = next_line()) {
     const std::string_view text = trimmed(*line);
     if (text.empty() || comment_signs_.find(text.front()) != std::string::npos) continue;
-    cut(*line, separator_, row_.fields_);
-    turn_decimal_commas();
-    return &row_;
+    return &split(*line);
   }
   return nullptr;
 }
@@ -248,6 +257,12 @@ void TextTable::turn_decimal_commas() {
   if (commas.empty() || (found && std::any_of(row_.fields_.begin(), row_.fields_.end(), has_point)))
     return;
   for (char* comma : commas) *comma = '.';
+}
+
+const Row& TextTable::split(std::string_view line) {
+  cut(line, separator_, row_.fields_);
+  turn_decimal_commas();
+  return row_;
 }
 
 void cut(std::string_view line, TextTable::Separator separator,

@@ -67,6 +67,10 @@ class TextTable {
   std::optional<std::string_view> next_line();
   /// The lines that come next, this many if there are; they are still to be read.
   const std::deque<std::string>& preview(size_t lines);
+  /// The same of a file that is not text throughout: next_line() ends a line at a zero byte.
+  std::optional<std::string_view> next_bytes();
+  /// A part of the line that came last, as a row.
+  const Row& split(std::string_view line);
 
   const std::string& path() const { return path_; }
   int64_t line() const { return row_.line_; }
@@ -74,6 +78,7 @@ class TextTable {
 
  private:
   std::optional<std::string_view> read_line();
+  std::optional<std::string_view> read_bytes();
   void turn_decimal_commas();
 
   std::string path_;

@@ -569,14 +569,177 @@ TEST_F(Rtklib, HeaderTellsTheDatum) {
   EXPECT_DOUBLE_EQ(fix_of(ellipsoidal + kHeader + rest).antenna.height, 400);
 }
 
-TEST_F(Rtklib, OtherFormatsAreRefusedInWords) {
-  for (const std::string header :
-       {"%  GPST   x-ecef(m)      y-ecef(m)      z-ecef(m)   Q  ns\n",
-        "%  GPST   e-baseline(m)  n-baseline(m)  u-baseline(m)   Q  ns\n",
-        "%  GPST   latitude(d'\")   longitude(d'\")  height(m)   Q  ns\n", "% hello\n"}) {
-    scratch_.text_file("a.pos", header + "2200 100.01 1 2 3 1 12\n");
+/// One epoch in every format of RTKLIB: lines of rnx2rtkp 2.4.3 b34 (Debian), run eight times over
+/// the same observations with other out-solformat, out-degform, out-timesys, out-timeform,
+/// out-fieldsep, out-outhead.
+struct FormatCase {
+  const char* name;
+  const char* header;
+  const char* row;
+};
+constexpr const char* kRtklibDegrees =
+    " 48.780782850    9.173350701   319.9867   2   6   0.4908   0.3184   1.1401  -0.1518  -0.0818  "
+    "-0.5288   0.00    0.0    5.23098   -0.19085    0.00761   4.47215  4.47214  4.47222 -0.00365 "
+    "-0.00200 -0.01273\n";
+constexpr const char* kRtklibDegreesHeader =
+    "  latitude(deg) longitude(deg)  height(m)   Q  ns   sdn(m)   sde(m)   sdu(m)  sdne(m)  "
+    "sdeu(m)  "
+    "sdun(m) age(s)  ratio    vn(m/s)    ve(m/s)    vu(m/s)      sdvn     sdve     sdvu    sdvne   "
+    " "
+    "sdveu    sdvun\n";
+constexpr const char* kRtklibBase = "% ref pos   : 48.780735783    9.171992250   320.0000\n";
+
+class RtklibFormats : public Rtklib {
+ protected:
+  RtklibFormats() {
+    scratch_.text_file("imu.csv",
+                       "week,sow,gx,gy,gz,ax,ay,az\n2244,36000.99,1,2,3,0.1,0.2,1.0\n"
+                       "2244,36001.00,1,2,3,0.1,0.2,1.0\n2244,36001.01,1,2,3,0.1,0.2,1.0\n");
+  }
+
+  GnssFix degrees() {
+    return fix_of(std::string("%  GPST   ") + kRtklibDegreesHeader + "2023/01/08 10:00:01.000" +
+                  kRtklibDegrees);
+  }
+
+  /// Positions are written to 0.1 mm, angles to 1e-9 deg or 1e-5 seconds of arc, sigmas to 0.1 mm
+  /// (beside sigmas of a metre), velocities to 1e-5 m/s.
+  void expect_same(const GnssFix& fix, const GnssFix& expected) {
+    EXPECT_EQ(fix.t_ns, expected.t_ns);
+    EXPECT_EQ(fix.quality, expected.quality);
+    EXPECT_LT(geodesy::ned_offset(expected.antenna, fix.antenna).norm(), 5e-4);
+    EXPECT_LT((fix.position_covariance - expected.position_covariance).cwiseAbs().maxCoeff(), 4e-4);
+    if (!fix.velocity_n) return;
+    EXPECT_LT((*fix.velocity_n - *expected.velocity_n).norm(), 3e-5);
+    EXPECT_LT((fix.velocity_covariance - expected.velocity_covariance).cwiseAbs().maxCoeff(), 4e-4);
+  }
+};
+
+TEST_F(RtklibFormats, DegreesAsTheFileSays) {
+  const GnssFix fix = degrees();
+  EXPECT_EQ(fix.t_ns, gps_to_unix_ns(2244, 36001));
+  EXPECT_NEAR(fix.antenna.latitude / kDegree, 48.780782850, 1e-12);
+  EXPECT_NEAR(fix.position_covariance(1, 2), 0.0818 * 0.0818, 1e-7);
+  EXPECT_NEAR(fix.velocity_n->z(), -0.00761, 1e-12);
+}
+
+TEST_F(RtklibFormats, GiveOneAnswer) {
+  const std::string utc_degrees = std::string("%  UTC ") + kRtklibDegreesHeader;
+  const std::string jst_degrees = std::string("%  JST ") + kRtklibDegreesHeader;
+  const std::string tow_row = std::string("2244  35983.000 ") + kRtklibDegrees;
+  const std::string jst_row = std::string("2023/01/08 18:59:43.000 ") + kRtklibDegrees;
+  const std::string plain_row = std::string("2023/01/08 10:00:01.000 ") + kRtklibDegrees;
+  const std::string base = kRtklibBase;
+  const std::string enu_header =
+      base +
+      "%  GPST    e-baseline(m)  n-baseline(m)  u-baseline(m)   Q  ns   sde(m)   sdn(m)   sdu(m)  "
+      "sden(m)  sdnu(m)  sdue(m) age(s)  ratio\n";
+  const std::string enu_comma_header =
+      "% ref pos   : 48,46,50.64882,   9,10,19.17210,  320.0000\n"
+      "%  GPST                , e-baseline(m), n-baseline(m), u-baseline(m),  Q, ns,  sde(m),  "
+      "sdn(m),  sdu(m), sden(m), sdnu(m), sdue(m),age(s), ratio\n";
+  const std::vector<FormatCase> cases{
+      {"ecef",
+       "%  GPST   x-ecef(m)      y-ecef(m)      z-ecef(m)   Q  ns   sdx(m)   sdy(m)   sdz(m)  "
+       "sdxy(m)  sdyz(m)  sdzx(m) age(s)  ratio    vx(m/s)    vy(m/s)    vz(m/s)      sdvx     "
+       "sdvy "
+       "    sdvz    sdvxy    sdvyz    sdvzx\n",
+       "2023/01/08 10:00:01.000   4157157.2546    671328.4117   4774770.4702   2   6   0.9755   "
+       "0.3574   0.7502   0.3876   0.2638   0.7468   0.00    0.0   -3.84902   -0.81489    3.45264  "
+       " "
+       "4.47220  4.47214  4.47217  0.00934  0.00636  0.01801\n"},
+      {"ecef without header", "",
+       "2023/01/08 10:00:01.000   4157157.2546    671328.4117   4774770.4702   2   6   0.9755   "
+       "0.3574   0.7502   0.3876   0.2638   0.7468   0.00    0.0\n"},
+      {"baseline", enu_header.c_str(),
+       "2023/01/08 10:00:01.000  99.8408  5.2353  -0.0140   2   6   0.3184   0.4908   1.1401  "
+       "-0.1518  -0.5288  -0.0817   0.00    0.0\n"},
+      {"baseline, commas, base in minutes and seconds", enu_comma_header.c_str(),
+       "2023/01/08 10:00:01.000,       99.8408,        5.2353,       -0.0140,  2,  6,  0.3184,  "
+       "0.4908,  1.1401, -0.1518, -0.5288, -0.0817,  0.00,   0.0\n"},
+      {"minutes and seconds",
+       "%  GPST   latitude(d'\")   longitude(d'\")  height(m)   Q  ns   sdn(m)   sde(m)   sdu(m)  "
+       "sdne(m)  sdeu(m)  sdue(m) age(s)  ratio    vn(m/s)    ve(m/s)    vu(m/s)      sdvn     "
+       "sdve "
+       "    sdvu    sdvne    sdveu    sdvun\n",
+       "2023/01/08 10:00:01.000   48 46 50.81826    9 10 24.06252   319.9867   2   6   0.4908   "
+       "0.3184   1.1401  -0.1518  -0.0818  -0.5288   0.00    0.0    5.23098   -0.19085    0.00761  "
+       " "
+       "4.47215  4.47214  4.47222 -0.00365 -0.00200 -0.01273\n"},
+      {"minutes and seconds without header", "",
+       "2023/01/08 10:00:01.000   48 46 50.81826    9 10 24.06252   319.9867   2   6   0.4908   "
+       "0.3184   1.1401  -0.1518  -0.0818  -0.5288   0.00    0.0\n"},
+      {"week and second of UTC", utc_degrees.c_str(), tow_row.c_str()},
+      {"JST", jst_degrees.c_str(), jst_row.c_str()},
+      {"no header", "", plain_row.c_str()}};
+  const GnssFix expected = degrees();
+  for (const FormatCase& c : cases) {
+    SCOPED_TRACE(c.name);
+    expect_same(fix_of(std::string(c.header) + c.row), expected);
+  }
+}
+
+TEST_F(RtklibFormats, WithoutAHeaderTheOrderIsANotice) {
+  scratch_.text_file("a.pos", std::string("2023/01/08 10:00:01.000") + kRtklibDegrees);
+  EXPECT_THAT(import_rtklib(rtklib_).gnss.notices,
+              ElementsAre(AllOf(HasSubstr("a.pos' has no header"), HasSubstr("lat/lon/height"))));
+  scratch_.text_file("a.pos", std::string("%  GPST ") + kRtklibDegreesHeader +
+                                  "2023/01/08 10:00:01.000" + kRtklibDegrees);
+  EXPECT_TRUE(import_rtklib(rtklib_).gnss.notices.empty());
+  scratch_.text_file("a.pos", "2023/01/08 10:00:01.000 48.7 9.1 320 2 6\n");
+  EXPECT_THAT(error_of<DataError>([&] { import_rtklib(rtklib_); }),
+              AllOf(HasSubstr("no header line"), HasSubstr("15 or 24 columns")));
+  scratch_.text_file("a.pos", "% hello\n");
+  EXPECT_THAT(error_of<DataError>([&] { import_rtklib(rtklib_); }), HasSubstr("no solution in it"));
+}
+
+TEST_F(RtklibFormats, SouthAndWestOfZeroDegrees) {
+  const GnssFix fix = fix_of(
+      "%  GPST   latitude(d'\")   longitude(d'\")  height(m)   Q  ns   sdn(m)   sde(m)   sdu(m)\n"
+      "2244 36001.00   -0 30 18.00000   -0 06 36.00000   10.0 1 9 0.01 0.01 0.02\n");
+  EXPECT_NEAR(fix.antenna.latitude / kDegree, -0.505, 1e-12);
+  EXPECT_NEAR(fix.antenna.longitude / kDegree, -0.11, 1e-12);
+}
+
+TEST_F(RtklibFormats, ABaselineNeedsItsBase) {
+  const std::string rest =
+      "%  GPST e-baseline(m) n-baseline(m) u-baseline(m) Q ns sde(m) sdn(m) sdu(m)\n"
+      "2244 36001.00 30 40 5 1 9 0.01 0.02 0.03\n";
+  for (const char* base : {"", "% ref pos   : 4157177.0658 671230.4766 4774767.0310\n"}) {
+    scratch_.text_file("a.pos", base + rest);
     EXPECT_THAT(error_of<DataError>([&] { import_rtklib(rtklib_); }),
-                HasSubstr("export with lat/lon/height in degrees"));
+                AllOf(HasSubstr("ref pos"), HasSubstr("gnss.origin latitude_deg")));
+  }
+  scratch_.text_file(
+      "mapping.yaml",
+      std::string(kImu) + "gnss:\n  origin: {latitude_deg: 49, longitude_deg: 8, height_m: 100}\n");
+  const geodesy::LocalFrame frame({49 * kDegree, 8 * kDegree, 100});
+  const GnssFix fix = fix_of(kRtklibBase + rest);  // the mapping's is better known
+  EXPECT_LT((frame.to_local(fix.antenna) - Eigen::Vector3d(40, 30, -5)).norm(), 1e-6);
+  EXPECT_NEAR(std::sqrt(fix.position_covariance(0, 0)), 0.02, 1e-6);
+}
+
+/// sdn 0.2, sde 0.2, sdu 0.7 mm, turned to ECEF at 48.78 N, 9.17 E and rounded: not positive.
+TEST_F(RtklibFormats, RoundedCovariancesAreWidened) {
+  const std::string header =
+      "%  GPST x-ecef(m) y-ecef(m) z-ecef(m) Q ns sdx(m) sdy(m) sdz(m) sdxy(m) sdyz(m) sdzx(m)\n";
+  const std::string place = "2244 36001.00 4157157.2546 671328.4117 4774770.4702 1 9 ";
+  const GnssFix fix = fix_of(header + place + "0.0005 0.0002 0.0005 0.0002 0.0002 0.0005\n");
+  const Eigen::Vector3d sigma = fix.position_covariance.diagonal().cwiseSqrt();
+  EXPECT_LT((sigma - Eigen::Vector3d(2e-4, 2e-4, 7e-4)).cwiseAbs().maxCoeff(), 2.5e-4);
+  scratch_.text_file("a.pos", header + place + "0.05 0.02 0.05 0.02 0.02 0.06\n");
+  EXPECT_THAT(error_of<DataError>([&] { import_rtklib(rtklib_); }),
+              HasSubstr("covariance is not positive"));
+}
+
+TEST_F(RtklibFormats, PlacesAndWeeksThatDoNotExist) {
+  const std::string ecef = "%  GPST x-ecef(m) y-ecef(m) z-ecef(m) Q ns sdx(m) sdy(m) sdz(m)\n";
+  std::string utc = kRtklibDegreesHeader;
+  for (const std::string& pos : {ecef + "2244 36001.00 0 0 0 1 9 0.01 0.01 0.01\n",
+                                 ecef + "2244 36001.00 1e300 0 0 1 9 0.01 0.01 0.01\n",
+                                 "%  UTC " + utc + "224400 35983.000" + kRtklibDegrees}) {
+    scratch_.text_file("a.pos", pos);
+    EXPECT_THAT(error_of<DataError>([&] { import_rtklib(rtklib_); }), HasSubstr("a.pos:2: "));
   }
 }
 

@@ -13,6 +13,7 @@
 #include "foucault/core/units.h"
 #include "foucault/rawlog/import_csv.h"
 #include "foucault/rawlog/import_i2nav.h"
+#include "foucault/rawlog/import_nmea.h"
 #include "foucault/rawlog/import_rtklib.h"
 #include "texts/rawlog_summary.h"
 
@@ -37,11 +38,12 @@ void report_stream(Console& console, const std::string& name, const rawlog::Impo
     console.warn(
         fmt::format("{}: skipped {} bad rows, the first: {}", s.file, s.skipped, s.first_skipped));
   }
+  for (const std::string& notice : s.notices) console.warn(notice);
 }
 
 void report_summary(Console& console, const rawlog::ImportSummary& summary,
                     const std::string& out) {
-  report_stream(console, "IMU", summary.imu);
+  if (!summary.imu.file.empty()) report_stream(console, "IMU", summary.imu);
   report_stream(console, "GNSS", summary.gnss);
   if (summary.reference) report_stream(console, "reference", *summary.reference);
   std::string qualities;
@@ -92,10 +94,10 @@ Action declare_i2nav(CLI::App& app) {
   };
 }
 
-/// `rtklib` and `csv` take the same options.
+/// `rtklib`, `csv` and `nmea` take the same options.
 template <class Import>
 Action declare_mapped(CLI::App& app, rawlog::ImportSummary (*import)(const Import&),
-                      const char* gnss_help) {
+                      const char* gnss_help, bool needs_mapping = true) {
   struct Options {
     Import import;
     std::optional<std::string> lever_arm;
@@ -103,7 +105,7 @@ Action declare_mapped(CLI::App& app, rawlog::ImportSummary (*import)(const Impor
   const auto o = std::make_shared<Options>();
   app.add_option("--mapping", o->import.mapping,
                  "YAML that names columns, units, axes, clocks and the lever arm")
-      ->required();
+      ->required(needs_mapping);
   app.add_option("--data", o->import.data_dir,
                  "Folder of the files that the mapping names; without it the mapping's own");
   app.add_option("--imu", o->import.imu, "IMU table, instead of the mapping's");
@@ -133,17 +135,22 @@ Action declare_import(CLI::App& app) {
       "      --gps-week 2017 --lever-arm -0.073,0.302,0.087 --out trip.rawlog\n"
       "  foucault import rtklib --gnss drive.pos --imu imu.csv --mapping drive.yaml --out "
       "drive.rawlog\n"
-      "  foucault import csv --mapping drive.yaml --out drive.rawlog");
+      "  foucault import csv --mapping drive.yaml --out drive.rawlog\n"
+      "  foucault import nmea --gnss drive.nmea --imu imu.csv --mapping drive.yaml --out "
+      "drive.rawlog");
   CLI::App* i2nav = app.add_subcommand("i2nav", "Text files of the i2Nav group (.txt, .pos, .nav)");
   CLI::App* rtklib = app.add_subcommand("rtklib", "A solution of RTKLIB (.pos) and an IMU table");
   CLI::App* csv = app.add_subcommand("csv", "Tables in columns, told by a mapping");
-  for (CLI::App* format : {i2nav, rtklib, csv}) format->fallthrough();
+  CLI::App* nmea = app.add_subcommand("nmea", "NMEA 0183 of a receiver, and an IMU table");
+  for (CLI::App* format : {i2nav, rtklib, csv, nmea}) format->fallthrough();
   const Action import_from_i2nav = declare_i2nav(*i2nav);
   const Action import_from_rtklib = declare_mapped<rawlog::RtklibImport>(
       *rtklib, rawlog::import_rtklib, "RTKLIB's .pos, instead of the mapping's");
   const Action import_from_csv = declare_mapped<rawlog::CsvImport>(
       *csv, rawlog::import_csv, "GNSS table, instead of the mapping's");
-  for (CLI::App* format : {rtklib, csv}) {
+  const Action import_from_nmea = declare_mapped<rawlog::NmeaImport>(
+      *nmea, rawlog::import_nmea, "NMEA sentences, instead of the mapping's", false);
+  for (CLI::App* format : {rtklib, csv, nmea}) {
     add_help_text(*format, "--help-mapping",
                   "List every key of a mapping, with default and meaning", mapping_help);
   }
@@ -151,6 +158,7 @@ Action declare_import(CLI::App& app) {
     if (i2nav->parsed()) import_from_i2nav(call);
     if (rtklib->parsed()) import_from_rtklib(call);
     if (csv->parsed()) import_from_csv(call);
+    if (nmea->parsed()) import_from_nmea(call);
   };
 }
 

@@ -36,10 +36,11 @@ struct ImportStream {
   int64_t without_fix = 0;    ///< rows that say there is no position, or are blank
   int64_t first_ns = 0;
   int64_t last_ns = 0;
+  std::vector<std::string> notices;  ///< what was assumed or left out, a line each
 };
 
 struct ImportSummary {
-  ImportStream imu;
+  ImportStream imu;  ///< without a file if there is none
   ImportStream gnss;
   std::optional<ImportStream> reference;
   int64_t wheel_speeds = 0;

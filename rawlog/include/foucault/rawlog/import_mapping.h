@@ -9,8 +9,8 @@
 #include "foucault/core/config.h"
 #include "foucault/state/interfaces.h"
 
-/// The YAML mapping of the importers `csv` and `rtklib`: names files, columns, units, axes and
-/// clocks of a recording.
+/// The YAML mapping of the importers `csv`, `rtklib` and `nmea`: names files, columns, units, axes
+/// and clocks of a recording.
 namespace foucault::rawlog {
 
 /// How the `time` column becomes a stamp. true time = stamp + offset_s.

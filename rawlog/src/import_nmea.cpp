@@ -1,0 +1,215 @@
+#include "foucault/rawlog/import_nmea.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+#include <set>
+
+#include "csv_readers.h"
+#include "foucault/core/error.h"
+#include "foucault/core/fix_quality.h"
+#include "foucault/core/time.h"
+#include "nmea_sentences.h"
+
+namespace foucault::rawlog {
+
+namespace {
+
+constexpr double kVerticalRatio = 2;     ///< sigma down to sigma north or east
+constexpr double kVelocitySigma = 0.1;   ///< north, east, of a Doppler solution [m/s]
+constexpr double kSmallestSigma = 1e-5;  ///< [m]
+constexpr double kLargestSigma = 1e6;    ///< [m]
+constexpr double kLargestHeight = 1e8;   ///< [m]
+
+/// Sigma north and east at an HDOP of 1, where nobody tells [m].
+double assumed_sigma(FixQuality quality) {
+  switch (quality) {
+    case FixQuality::fixed_rtk:
+      return 0.02;
+    case FixQuality::float_rtk:
+      return 0.3;
+    case FixQuality::ppp:
+    case FixQuality::differential:
+      return 1;
+    case FixQuality::single:
+    case FixQuality::unknown:
+      break;
+  }
+  return 3;
+}
+
+class NmeaReader : public RecordReader {
+ public:
+  NmeaReader(const GnssMapping& mapping, const std::string& path)
+      : epochs_(path),
+        mapping_(mapping),
+        offset_ns_(nanoseconds(mapping.time.offset_s)),
+        near_ns_(first_stamp(mapping, path)) {}
+
+  const TextTable& table() const override { return epochs_.sentences().table(); }
+  int64_t without_fix() const override { return epochs_.without_fix(); }
+
+  std::optional<Record> next() override {
+    while (const std::optional<NmeaEpoch> epoch = epochs_.next()) {
+      near_ns_ = stamp_near(epoch->time_of_day_ns, epoch->dated_ns.value_or(near_ns_));
+      if (epoch->position) return fix_of(*epoch);
+    }
+    return std::nullopt;
+  }
+
+  std::vector<std::string> notices() const override {
+    std::vector<std::string> found;
+    const NmeaSentences& sentences = epochs_.sentences();
+    if (sentences.damaged() > 0) {
+      found.push_back(
+          fmt::format("{}: left out {} of {} sentences, their checksum is wrong or missing; the "
+                      "first in line {}",
+                      table().path(), sentences.damaged(), sentences.sentences(),
+                      sentences.first_damaged_line()));
+    }
+    if (!assumed_.empty()) {
+      std::vector<std::string> parts;
+      for (const FixQuality quality : assumed_) {
+        parts.push_back(fmt::format("{} m ({})", assumed_sigma(quality), name_of(quality)));
+      }
+      found.push_back(
+          fmt::format("{}: no sigmas (GST): HDOP times {} assumed, down twice that; if known, give "
+                      "gnss.sigma_m: [north, east, down] at an HDOP of 1",
+                      table().path(), fmt::join(parts, ", ")));
+    }
+    if (velocity_assumed_) {
+      found.push_back(fmt::format(
+          "{}: velocities along the ground with an assumed sigma of {} m/s; if known, give "
+          "gnss.velocity_sigma_m_s: [north, east, down]",
+          table().path(), kVelocitySigma));
+    }
+    if (epochs_.headings() > 0) {
+      found.push_back(
+          fmt::format("{}: {} headings (THS, HDT) left out, logs have no place for them",
+                      table().path(), epochs_.headings()));
+    }
+    return found;
+  }
+
+ private:
+  static int64_t first_stamp(const GnssMapping& mapping, const std::string& path);
+
+  GnssFix fix_of(const NmeaEpoch& epoch) {
+    const NmeaPosition& position = *epoch.position;
+    const Row& row = *epoch.row;
+    GnssFix fix;
+    fix.quality = position.quality;
+    fix.antenna = checked_position(row, position.latitude, position.longitude,
+                                   position.height + separation(position, row));
+    if (std::abs(fix.antenna.height) > kLargestHeight) {
+      row.fail(fmt::format("{} m are no height; correct or remove the line", fix.antenna.height));
+    }
+    fix.position_covariance = sigma(epoch).cwiseAbs2().asDiagonal();
+    if (epoch.velocity && mapping_.velocity) add_velocity(fix, *epoch.velocity);
+    fix.t_ns = checked_stamp(row, near_ns_ + offset_ns_);
+    order_.check(row, fix.t_ns);
+    return fix;
+  }
+
+  double separation(const NmeaPosition& position, const Row& row) const {
+    if (position.geoid_separation) return *position.geoid_separation;
+    if (mapping_.geoid_separation_m) return *mapping_.geoid_separation_m;
+    row.fail(
+        "GGA has no geoid separation; give gnss.geoid_separation_m (ellipsoidal = msl + "
+        "separation; 50 m off do no harm, 0 is allowed)");
+  }
+
+  Eigen::Vector3d sigma(const NmeaEpoch& epoch) {
+    const Eigen::Vector3d found = epoch.sigma ? *epoch.sigma : sigma_by_hdop(*epoch.position);
+    if (!(found.minCoeff() > kSmallestSigma && found.maxCoeff() < kLargestSigma)) {
+      epoch.row->fail(
+          fmt::format("sigmas of the position of {} to {} m (GST or HDOP); remove the "
+                      "lines of this time",
+                      found.minCoeff(), found.maxCoeff()));
+    }
+    return found;
+  }
+
+  /// A missing HDOP counts as 1.
+  Eigen::Vector3d sigma_by_hdop(const NmeaPosition& position) {
+    const double hdop = position.hdop && *position.hdop > 0 ? *position.hdop : 1;
+    if (mapping_.sigma_m.size() == 3) return hdop * Eigen::Vector3d(mapping_.sigma_m.data());
+    assumed_.insert(position.quality);
+    return hdop * assumed_sigma(position.quality) * Eigen::Vector3d(1, 1, kVerticalRatio);
+  }
+
+  void add_velocity(GnssFix& fix, const Eigen::Vector2d& velocity) {
+    fix.velocity_n = Eigen::Vector3d(velocity.x(), velocity.y(), 0);
+    Eigen::Vector3d sigma(kVelocitySigma, kVelocitySigma, kOpenVerticalSigma);
+    if (mapping_.velocity_sigma_m_s.size() == 3) {
+      sigma = Eigen::Vector3d(mapping_.velocity_sigma_m_s.data());
+    } else {
+      velocity_assumed_ = true;
+    }
+    fix.velocity_covariance = sigma.cwiseAbs2().asDiagonal();
+  }
+
+  NmeaEpochs epochs_;
+  GnssMapping mapping_;
+  int64_t offset_ns_;
+  int64_t near_ns_;  ///< a stamp within half a day of the next epoch
+  StampOrder order_;
+  std::set<FixQuality> assumed_;
+  bool velocity_assumed_ = false;
+};
+
+/// The first epoch of the file, dated by the first RMC or ZDA beside a position.
+int64_t NmeaReader::first_stamp(const GnssMapping& mapping, const std::string& path) {
+  NmeaEpochs epochs(path);
+  std::optional<int64_t> first_time_ns;
+  for (bool over = false; !over;) {
+    try {
+      const std::optional<NmeaEpoch> epoch = epochs.next();
+      over = !epoch;
+      if (over || !epoch->position) continue;
+      if (!first_time_ns) first_time_ns = epoch->time_of_day_ns;
+      if (epoch->dated_ns) return stamp_near(*first_time_ns, *epoch->dated_ns);
+    } catch (const RowError&) {
+      continue;  // comes again when the file is read
+    }
+  }
+  if (!first_time_ns) {
+    throw DataError(fmt::format(
+        "'{}' has no position in NMEA: of {} sentences {} have a wrong checksum or none, {} GGA "
+        "are without a fix; give a file with GGA sentences",
+        path, epochs.sentences().sentences(), epochs.sentences().damaged(), epochs.without_fix()));
+  }
+  const std::optional<int64_t> midnight = midnight_ns(mapping.time.date, "%Y-%m-%d");
+  if (midnight) return *midnight + *first_time_ns;
+  throw UsageError(
+      fmt::format("'{}' has no date (RMC or ZDA); give gnss.time.date: YYYY-MM-DD, of its first "
+                  "position, UTC",
+                  path));
+}
+
+}  // namespace
+
+ImportSummary import_nmea(const NmeaImport& options) {
+  const MappingSource source{options.mapping, options.data_dir};
+  const ImportMapping mapping = options.mapping.empty() ? ImportMapping{} : load_mapping(source);
+  if (options.mapping.empty() && (options.imu || options.reference)) {
+    throw UsageError("--imu and --reference need --mapping, which names their columns");
+  }
+  const auto imu = input_path(source, options.imu, mapping.imu.file);
+  const auto gnss = input_path(source, options.gnss, mapping.gnss.file);
+  const auto reference = input_path(source, options.reference, mapping.reference.file);
+  if (!gnss) throw UsageError("no NMEA file: give --gnss, or gnss.file in the mapping");
+  ImportInputs inputs;
+  naming_mapping(options.mapping, [&] {
+    if (imu) inputs.imu = make_imu_reader(mapping.imu, *imu);
+    if (reference) inputs.reference = make_reference_reader(mapping.reference, *reference);
+    inputs.mounting = mapping.imu.mounting();
+  });
+  inputs.gnss = std::make_unique<NmeaReader>(mapping.gnss, *gnss);
+  inputs.mapping = options.mapping;
+  inputs.lever_arm_v = options.lever_arm.value_or(mapping.lever_arm_m);
+  return run_import(options, std::move(inputs));
+}
+
+}  // namespace foucault::rawlog

@@ -1,0 +1,90 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+
+#include "foucault/core/measurement.h"
+#include "text_table.h"
+
+/// Sentences of NMEA 0183, and what those of one time of day say together.
+/// Source: IEC 61162-1; gpsd's "NMEA Revealed".
+namespace foucault::rawlog {
+
+/// What a GGA says.
+struct NmeaPosition {
+  FixQuality quality = FixQuality::unknown;
+  double latitude = 0;                     ///< [rad]
+  double longitude = 0;                    ///< [rad]
+  double height = 0;                       ///< above mean sea level [m]
+  std::optional<double> geoid_separation;  ///< [m]
+  std::optional<double> hdop;
+};
+
+struct NmeaEpoch {
+  int64_t time_of_day_ns = 0;       ///< UTC
+  std::optional<int64_t> dated_ns;  ///< a stamp near it, from RMC or ZDA
+  std::optional<NmeaPosition> position;
+  std::optional<Eigen::Vector3d> sigma;     ///< north, east, down, from GST [m]
+  std::optional<Eigen::Vector2d> velocity;  ///< north, east [m/s]
+  bool velocity_from_rmc = false;
+  std::optional<Row> row;  ///< of the GGA, for messages only: its fields are gone
+};
+
+/// Sentences with a right checksum, cut into fields. What stands between them is left out: stamps
+/// of a logger, binary messages of the receiver.
+class NmeaSentences {
+ public:
+  explicit NmeaSentences(const std::string& path);
+
+  /// The first field is the address, e.g. GPGGA. None at the end.
+  const Row* next();
+  const TextTable& table() const { return table_; }
+  int64_t sentences() const { return sentences_; }
+  int64_t damaged() const { return damaged_; }
+  int64_t first_damaged_line() const { return first_damaged_line_; }
+
+ private:
+  /// From '$' on; whether it is right is not checked.
+  std::optional<std::string_view> next_sentence();
+
+  TextTable table_;
+  std::string_view rest_;  ///< of the line
+  int64_t sentences_ = 0;
+  int64_t damaged_ = 0;  ///< checksum wrong or missing
+  int64_t first_damaged_line_ = 0;
+};
+
+/// Sentences of a time of day, joined.
+class NmeaEpochs {
+ public:
+  explicit NmeaEpochs(const std::string& path) : sentences_(path) {}
+
+  /// None at the end. Throws RowError for a sentence that is wrong, and goes on behind it.
+  std::optional<NmeaEpoch> next();
+  const NmeaSentences& sentences() const { return sentences_; }
+  int64_t without_fix() const { return without_fix_; }
+  int64_t headings() const { return headings_; }
+
+ private:
+  void take(const Row& row);
+  void take_timed(std::string_view type, const Row& row);
+  void take_position(const Row& row);
+  void take_zda(const Row& row);
+  void take_vtg(const Row& row);
+  void take_date(const Row& row, const std::string& date, const char* format);
+  void take_rmc(const Row& row);
+  void finish();
+
+  NmeaSentences sentences_;
+  std::optional<NmeaEpoch> current_;
+  std::optional<NmeaEpoch> finished_;
+  std::optional<int64_t> dated_ns_;
+  int64_t without_fix_ = 0;
+  int64_t headings_ = 0;
+};
+
+/// The stamp of a time of day that is nearest to `near_ns`.
+int64_t stamp_near(int64_t time_of_day_ns, int64_t near_ns);
+
+}  // namespace foucault::rawlog
