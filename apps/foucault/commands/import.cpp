@@ -14,6 +14,7 @@
 #include "foucault/rawlog/import_csv.h"
 #include "foucault/rawlog/import_i2nav.h"
 #include "foucault/rawlog/import_rtklib.h"
+#include "foucault/rawlog/import_ulog.h"
 #include "texts/rawlog_summary.h"
 
 namespace foucault::app {
@@ -90,6 +91,23 @@ Action declare_i2nav(CLI::App& app) {
   };
 }
 
+Action declare_ulog(CLI::App& app) {
+  struct Options {
+    rawlog::UlogImport import;
+    std::optional<std::string> lever_arm;
+  };
+  const auto o = std::make_shared<Options>();
+  app.add_option("log", o->import.log, "ULog of PX4 (.ulg, or .gz)")->required();
+  app.add_option("--lever-arm", o->lever_arm,
+                 std::string(kLeverArmHelp) + "; without it EKF2_GPS_POS of the log");
+  add_common(app, o->import);
+  return [o](Call& call) {
+    if (o->lever_arm) o->import.lever_arm = parse_vector3("--lever-arm", *o->lever_arm);
+    o->import.progress = call.console.progress_of("importing");
+    report_summary(call.console, rawlog::import_ulog(o->import), o->import.out);
+  };
+}
+
 /// `rtklib` and `csv` take the same options.
 template <class Import>
 Action declare_mapped(CLI::App& app, rawlog::ImportSummary (*import)(const Import&),
@@ -135,12 +153,14 @@ Action declare_import(CLI::App& app) {
   CLI::App* i2nav = app.add_subcommand("i2nav", "Text files of the i2Nav group (.txt, .pos, .nav)");
   CLI::App* rtklib = app.add_subcommand("rtklib", "A solution of RTKLIB (.pos) and an IMU table");
   CLI::App* csv = app.add_subcommand("csv", "Tables in columns, told by a mapping");
-  for (CLI::App* format : {i2nav, rtklib, csv}) format->fallthrough();
+  CLI::App* ulog = app.add_subcommand("ulog", "A ULog of PX4: IMU and GNSS of an autopilot");
+  for (CLI::App* format : {i2nav, rtklib, csv, ulog}) format->fallthrough();
   const Action import_from_i2nav = declare_i2nav(*i2nav);
   const Action import_from_rtklib = declare_mapped<rawlog::RtklibImport>(
       *rtklib, rawlog::import_rtklib, "RTKLIB's .pos, instead of the mapping's");
   const Action import_from_csv = declare_mapped<rawlog::CsvImport>(
       *csv, rawlog::import_csv, "GNSS table, instead of the mapping's");
+  const Action import_from_ulog = declare_ulog(*ulog);
   for (CLI::App* format : {rtklib, csv}) {
     add_help_text(*format, "--help-mapping",
                   "List every key of a mapping, with default and meaning", mapping_help);
@@ -149,6 +169,7 @@ Action declare_import(CLI::App& app) {
     if (i2nav->parsed()) import_from_i2nav(call);
     if (rtklib->parsed()) import_from_rtklib(call);
     if (csv->parsed()) import_from_csv(call);
+    if (ulog->parsed()) import_from_ulog(call);
   };
 }
 
