@@ -115,7 +115,7 @@ bool BagFile::read_record(Header& header) {
   file_.begin_record();
   if (file_.at_end()) return false;
   if (!read_part(header_) || !read_part(data_)) {
-    file_.fail("the file ends within a record; it was not closed, or is cut off (rosbag reindex)");
+    file_.fail("the file ends within a record, it is cut off; get the whole one");
   }
   header = header_of(bytes_of(header_));
   return true;

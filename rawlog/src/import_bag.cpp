@@ -88,10 +88,19 @@ struct RosImu : Fields {
   explicit RosImu(const std::string& definition)
       : Fields(definition),
         gyro(want_vector(layout, "angular_velocity")),
-        accel(want_vector(layout, "linear_acceleration")) {}
+        accel(want_vector(layout, "linear_acceleration")),
+        gyro_covariance(layout.want("angular_velocity_covariance", 9)),
+        accel_covariance(layout.want("linear_acceleration_covariance", 9)) {}
   bool complete() const { return has_all(gyro) && has_all(accel); }
 
+  /// A covariance that begins with -1 says so.
+  bool absent(const Values& values) const {
+    return (gyro_covariance && values[*gyro_covariance] == -1) ||
+           (accel_covariance && values[*accel_covariance] == -1);
+  }
+
   std::array<Slot, 3> gyro, accel;
+  Slot gyro_covariance, accel_covariance;
 };
 
 struct RosFix : Fields {
@@ -237,6 +246,11 @@ class BagImu : public BagReader {
   imu::ImuSample sample(const BagMessage& message) {
     const RosImu& fields = fields_of(message, fields_);
     const Values values = values_of(fields, message);
+    if (fields.absent(values)) {
+      place().fail(
+          "an IMU sample that says it has no rates or accelerations; choose another "
+          "topic by --imu-topic");
+    }
     imu::ImuSample sample;
     sample.gyro_b = vector(values, fields.gyro);
     sample.accel_b = vector(values, fields.accel);
@@ -313,7 +327,9 @@ class BagGnss : public BagReader {
     const Values values = values_of(fields, message);
     const Eigen::Vector3d enu = vector(values, fields.velocity);
     if (!enu.allFinite()) return std::nullopt;  // no velocity at this time
-    Velocity velocity{fields.stamp(values, message), {enu.y(), enu.x(), -enu.z()}, {}};
+    Velocity velocity;
+    velocity.t_ns = fields.stamp(values, message);
+    velocity.velocity_n = {enu.y(), enu.x(), -enu.z()};
     constexpr size_t kWidth = 6;
     if (fields.covariance) velocity.covariance = ned(matrix(values, *fields.covariance, kWidth));
     if (!is_covariance(velocity.covariance)) {

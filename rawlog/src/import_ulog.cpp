@@ -94,13 +94,14 @@ struct BootIncrement {
 };
 
 BootIncrement increment_of(const ImuFields& fields, const UlogMessage& message) {
+  constexpr double kShortest = kMicrosecond;
   constexpr double kLongest = 10;  // [s]
   BootIncrement increment;
   increment.t_us = microseconds(message, fields.time);
   increment.dt = fields.gyro_dt.of(message);
   const double accel_dt = fields.accel_dt.of(message);
   for (const double dt : {increment.dt, accel_dt}) {
-    if (dt > 0 && dt < kLongest) continue;
+    if (dt >= kShortest && dt < kLongest) continue;
     message.place().fail(
         fmt::format("topic {}: a sample over {:.6g} s cannot be", message.topic().name, dt));
   }
@@ -331,7 +332,8 @@ void Survey::take(const UlogMessage& message) {
     const FixTime time = time_of(*fields, message);
     Amount& amount = gnss_[stream];
     count(amount, time.boot_us);
-    if (time.utc_us && quality_of(*fields, message)) amount.fixes.push_back(time);
+    const bool repeated = !amount.fixes.empty() && amount.fixes.back().utc_us == time.utc_us;
+    if (time.utc_us && !repeated && quality_of(*fields, message)) amount.fixes.push_back(time);
   }
 }
 
@@ -477,7 +479,11 @@ class UlogGnss : public UlogReader {
     const Eigen::Vector3d sigmas(horizontal, horizontal, sigma(fields.epv, message));
     fix.position_covariance = sigmas.cwiseAbs2().asDiagonal();
     add_velocity(fields, message, fix);
-    fix.t_ns = checked_stamp(message.place(), clock().utc_ns(time_of(fields, message)));
+    FixTime time = time_of(fields, message);
+    const bool repeated = time.utc_us == last_utc_us_;  // a receiver that does not count on
+    last_utc_us_ = time.utc_us;
+    if (repeated) time.utc_us.reset();
+    fix.t_ns = checked_stamp(message.place(), clock().utc_ns(time));
     order_.check(message.place(), fix.t_ns);
     return fix;
   }
@@ -509,6 +515,7 @@ class UlogGnss : public UlogReader {
 
   std::optional<GnssFields> fields_;
   std::optional<bool> ellipsoidal_;
+  std::optional<int64_t> last_utc_us_;
   int64_t without_fix_ = 0;
 };
 

@@ -39,6 +39,8 @@ RosDecoder ros_decoder(const std::string& type) {
   return found == kDecoders.end() ? nullptr : found->second;
 }
 
+bool is_time(const std::string& type) { return type == "time" || type == "duration"; }
+
 std::string_view next_word(std::string_view& text) {
   const size_t begin = std::min(text.find_first_not_of(" \t\r"), text.size());
   const size_t end = std::min(text.find_first_of(" \t\r", begin), text.size());
@@ -108,21 +110,29 @@ std::optional<std::string> RosLayout::find_type(const Types& types, const std::s
   return std::nullopt;
 }
 
+/// Two numbers; in an array they are passed over.
+void RosLayout::add_time(const Line& line, const std::string& path, std::vector<Field>& fields) {
+  if (line.array) {
+    fields.push_back({path, "uint64", line.count, line.counted, {}, {}});
+    return;
+  }
+  const std::string part = line.type == "time" ? "uint32" : "int32";
+  fields.push_back({path + ".secs", part, 1, false, {}, {}});
+  fields.push_back({path + ".nsecs", part, 1, false, {}, {}});
+}
+
 void RosLayout::expand(const Types& types, const std::string& type, const std::string& prefix,
                        int depth, std::vector<Field>& fields) {
   if (depth > kMostNested) throw BadRecord("a message definition within itself");
   for (const Line& line : types.at(type)) {
     if (++fields_made_ > kMostFields) throw BadRecord("a message definition that is too long");
     const std::string path = prefix + line.name;
+    if (is_time(line.type)) {
+      add_time(line, path, fields);
+      continue;
+    }
     Field field{path, line.type, line.count, line.counted, {}, {}};
     if (ros_decoder(line.type) != nullptr) {
-      fields.push_back(field);
-    } else if (!line.array && (line.type == "time" || line.type == "duration")) {
-      const std::string part = line.type == "time" ? "uint32" : "int32";
-      fields.push_back({path + ".secs", part, 1, false, {}, {}});
-      fields.push_back({path + ".nsecs", part, 1, false, {}, {}});
-    } else if (line.type == "time" || line.type == "duration") {
-      field.type = "uint64";
       fields.push_back(field);
     } else {
       const std::optional<std::string> inner = find_type(types, line.type);

@@ -48,6 +48,7 @@ class RosLayout {
   static std::optional<std::string> find_type(const Types& types, const std::string& type);
   void expand(const Types& types, const std::string& type, const std::string& prefix, int depth,
               std::vector<Field>& fields);
+  static void add_time(const Line& line, const std::string& path, std::vector<Field>& fields);
   std::optional<size_t> want_exactly(const std::string& path, size_t count);
   static void read_field(const Field& field, RecordCursor& cursor, size_t size,
                          std::vector<double>& values);

@@ -55,9 +55,7 @@ double UlogMessage::number(const UlogField& field, size_t index) const {
   const Decoder decode = decoder_of(field.type);
   if (decode == nullptr || index >= field.count) {
     place_->fail(
-        fmt::format("topic {}: a field of type {}[{}] is not what it should be; the format "
-                    "is not known to this program",
-                    topic_->name, field.type, field.count));
+        fmt::format("topic {} has a field of another type than this program knows", topic_->name));
   }
   try {
     RecordCursor cursor(bytes_);
@@ -129,7 +127,7 @@ bool UlogFile::read_message(char& type) {
     if (enter_appended(size)) return read_message(type);
     whole = file_.read(size, body_);
   }
-  if (!whole) file_.fail("the file ends within a message; it was not closed, or is cut off");
+  if (!whole) file_.fail("the file ends within a message, it is cut off; get the whole one");
   return true;
 }
 

@@ -100,11 +100,11 @@ class Bag : public ::testing::Test {
     connect(1, "/fix", "sensor_msgs/NavSatFix", kFixType);
     connect(2, "/vel", "geometry_msgs/TwistStamped", kTwistType);
   }
-  void imu(double t) {
+  void imu(double t, double accel_covariance = 0) {
     const std::array<double, 9> none{};
     message(0, t,
-            stamp_header(t) +
-                packed(0.0, 0.0, 0.0, 1.0, none, 0.1, 0.2, 0.3, none, 1.0, 2.0, 9.8, none));
+            stamp_header(t) + packed(0.0, 0.0, 0.0, 1.0, none, 0.1, 0.2, 0.3, none, 1.0, 2.0, 9.8,
+                                     std::array<double, 9>{accel_covariance}));
   }
   void fix(double t, int8_t status = 0, uint8_t covariance_type = 3) {
     // east, north, up
@@ -290,6 +290,14 @@ TEST_F(Bag, TopicsAreChosen) {
   options_.imu_topic.reset();
   std::filesystem::remove(options_.out);
   EXPECT_THAT(data_error(), HasSubstr("no topic with latitude, longitude and altitude"));
+}
+
+TEST_F(Bag, AnImuWithoutAccelerometer) {
+  connect();
+  for (int i = 0; i < 20; ++i) imu(0.01 * i, -1);
+  fix(0.1);
+  write(chunk("none"));
+  EXPECT_THAT(data_error(), HasSubstr("says it has no rates or accelerations"));
 }
 
 TEST_F(Bag, DamageNamesTheByte) {

@@ -207,6 +207,18 @@ TEST_F(Ulog, TheBootClockDrifts) {
   EXPECT_NEAR(static_cast<double>(fixes[99].t_ns - fixes[98].t_ns), 1e9, 15e6);
 }
 
+/// Then the time of reception counts.
+TEST_F(Ulog, AUtcThatStands) {
+  begin();
+  increments(100);
+  fix(kBoot + 101'000, kUtc + 100'000);
+  fix(kBoot + 151'000, kUtc + 100'000);
+  EXPECT_EQ(import().gnss.written, 2);
+  const auto fixes = all<GnssFix>();
+  EXPECT_EQ(fixes[0].t_ns, static_cast<int64_t>(kUtc + 100'000) * 1000);
+  EXPECT_NEAR(static_cast<double>(fixes[1].t_ns - fixes[0].t_ns), 50e6, 1e3);
+}
+
 TEST_F(Ulog, AppendedDataFollowWhatWasCutOff) {
   const auto write = [this](uint64_t appended) {
     log_ = {};
