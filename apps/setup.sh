@@ -10,6 +10,7 @@ build_packages=(
   libceres-dev
   libopencv-dev libopencv-contrib-dev # contrib: freetype, for text in the figures
   libcli11-dev nlohmann-json3-dev libfmt-dev libyaml-cpp-dev zlib1g-dev
+  libbz2-dev liblz4-dev # compressed bags
   fonts-dejavu-core
 )
 test_packages=(libgtest-dev libgmock-dev libgeographiclib-dev)

@@ -51,7 +51,7 @@ class Input {
  private:
   struct Ahead {
     Record record;
-    int64_t line = 0;
+    int64_t position = 0;
   };
 
   void fill() {
@@ -76,7 +76,7 @@ class Input {
       since_jump_.reset();
     }
     newest_ns_ = t_ns;
-    ahead_.push_back({std::move(*record), reader_->table().line()});
+    ahead_.push_back({std::move(*record), reader_->table().position()});
   }
 
   /// Of a record whose stamp lies ahead of one that follows.
@@ -84,10 +84,9 @@ class Input {
     const Ahead last = std::move(ahead_.back());
     ahead_.pop_back();
     if (std::holds_alternative<WheelSpeed>(last.record)) return;  // its row has another record
-    skip(
-        fmt::format("{}:{}: the stamp {} lies ahead of one that follows, {}; correct or remove "
-                    "the row",
-                    summary_.file, last.line, utc_text(stamp(last.record)), utc_text(follows_ns)));
+    skip(fmt::format(
+        "{}: the stamp {} lies ahead of one that follows, {}; correct or remove the row",
+        reader_->table().place(last.position), utc_text(stamp(last.record)), utc_text(follows_ns)));
   }
 
   void skip(const std::string& why) {
@@ -191,7 +190,7 @@ void check_not_an_input(const std::string& out, const ImportInputs& inputs) {
 
 }  // namespace
 
-void StampOrder::check(const Row& row, int64_t t_ns, bool may_equal) {
+void StampOrder::check(const Place& row, int64_t t_ns, bool may_equal) {
   const bool equal = last_ns_ && t_ns == *last_ns_;
   const bool follows = !last_ns_ || t_ns > *last_ns_ || (equal && may_equal);
   const bool goes_on = before_jump_ns_ && !equal && t_ns > *before_jump_ns_;
@@ -264,7 +263,7 @@ ImportSummary run_import(const ImportOptions& options, ImportInputs inputs) {
   return summary;
 }
 
-Geodetic checked_position(const Row& row, double latitude, double longitude, double height) {
+Geodetic checked_position(const Place& row, double latitude, double longitude, double height) {
   if (std::abs(latitude) > kPi / 2 || std::abs(longitude) > 2 * kPi) {
     row.fail(
         fmt::format("latitude {:.9g} deg, longitude {:.9g} deg are no place on Earth; check "
@@ -274,7 +273,7 @@ Geodetic checked_position(const Row& row, double latitude, double longitude, dou
   return {latitude, longitude, height};
 }
 
-int64_t checked_stamp(const Row& row, int64_t t_ns) {
+int64_t checked_stamp(const Place& row, int64_t t_ns) {
   if (!in_range_of_stamps(t_ns)) {
     row.fail(
         "its time is none of the years 1950 to 2150; check column, unit and system of the "
@@ -290,7 +289,7 @@ std::optional<int64_t> midnight_ns(const std::string& date, const char* format) 
   return static_cast<int64_t>(timegm(&utc)) * kNanosecondsPerSecond;
 }
 
-GpsTime checked_gps_time(const Row& row, int64_t week, int64_t tow_ns) {
+GpsTime checked_gps_time(const Place& row, int64_t week, int64_t tow_ns) {
   constexpr int64_t kLastWeek = 10'000;
   int64_t weeks = tow_ns / kNanosecondsPerWeek;
   if (tow_ns % kNanosecondsPerWeek < 0) --weeks;
@@ -302,7 +301,7 @@ GpsTime checked_gps_time(const Row& row, int64_t week, int64_t tow_ns) {
   return {static_cast<int>(full_week), tow_ns - weeks * kNanosecondsPerWeek};
 }
 
-int64_t gps_stamp(const Row& row, int64_t week, int64_t tow_ns) {
+int64_t gps_stamp(const Place& row, int64_t week, int64_t tow_ns) {
   return checked_stamp(row, gps_to_unix_ns(checked_gps_time(row, week, tow_ns)));
 }
 

@@ -18,7 +18,7 @@ class RecordReader {
  public:
   virtual ~RecordReader() = default;
   virtual std::optional<Record> next() = 0;
-  virtual const TextTable& table() const = 0;
+  virtual const InputFile& table() const = 0;
   /// Rows that have nothing to read: the receiver says it has no position, or the cells are blank.
   virtual int64_t without_fix() const { return 0; }
   /// What was assumed or left out, once all is read.
@@ -33,7 +33,7 @@ inline constexpr int kMostRowsAhead = 100;
 /// them out.
 class StampOrder {
  public:
-  void check(const Row& row, int64_t t_ns, bool may_equal = false);
+  void check(const Place& row, int64_t t_ns, bool may_equal = false);
   static bool is_jump(int64_t from_ns, int64_t to_ns) {
     return to_ns - from_ns > kNanosecondsPerSecond;
   }
@@ -90,17 +90,17 @@ struct ImportInputs {
 ImportSummary run_import(const ImportOptions& options, ImportInputs inputs);
 
 /// Latitude, longitude [rad], height [m] within their ranges, else a RowError.
-Geodetic checked_position(const Row& row, double latitude, double longitude, double height);
+Geodetic checked_position(const Place& row, double latitude, double longitude, double height);
 
 /// The stamp of a row, if it is one that a rawlog can hold. Throws RowError.
-int64_t checked_stamp(const Row& row, int64_t t_ns);
+int64_t checked_stamp(const Place& row, int64_t t_ns);
 
 /// Midnight of a date as strptime's `format` has it; none if it is no date of the years 1950 to
 /// 2150.
 std::optional<int64_t> midnight_ns(const std::string& date, const char* format);
 
 /// GPS week and second of week, which may lie outside its week, of a row. Throws RowError.
-GpsTime checked_gps_time(const Row& row, int64_t week, int64_t tow_ns);
-int64_t gps_stamp(const Row& row, int64_t week, int64_t tow_ns);
+GpsTime checked_gps_time(const Place& row, int64_t week, int64_t tow_ns);
+int64_t gps_stamp(const Place& row, int64_t week, int64_t tow_ns);
 
 }  // namespace foucault::rawlog

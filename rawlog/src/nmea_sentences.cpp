@@ -133,7 +133,7 @@ const Row* NmeaSentences::next() {
     if (star != std::string_view::npos && checksum_is_right(*sentence, star)) {
       return &table_.split(sentence->substr(1, star - 1));
     }
-    if (damaged_++ == 0) first_damaged_line_ = table_.line();
+    if (damaged_++ == 0) first_damaged_line_ = table_.position();
   }
   return nullptr;
 }

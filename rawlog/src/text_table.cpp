@@ -152,9 +152,7 @@ double Row::sigma(size_t column, const std::string& constant) const {
                   column + 1, text(column), unknown));
 }
 
-void Row::fail(const std::string& what) const {
-  throw RowError(fmt::format("{}:{}: {}", *path_, line_, what));
-}
+std::string Row::where() const { return fmt::format("{}:{}", *path_, line_); }
 
 TextTable::TextTable(std::string path, Separator separator, std::string comment_signs)
     : path_(std::move(path)),
@@ -278,6 +276,8 @@ void cut(std::string_view line, TextTable::Separator separator,
     begin = runs ? line.find_first_not_of(signs, end) : end + 1;
   }
 }
+
+std::string TextTable::place(int64_t line) const { return fmt::format("{}:{}", path_, line); }
 
 double TextTable::progress() const {
   return file_size_ > 0 ? std::min(1.0, static_cast<double>(gzoffset(file_.get())) / file_size_)

@@ -8,21 +8,15 @@
 #include <vector>
 
 #include "files.h"
-#include "foucault/core/error.h"
+#include "input_file.h"
 
 namespace foucault::rawlog {
-
-/// Something wrong with one row; the message has file, line and remedy.
-class RowError : public DataError {
- public:
-  using DataError::DataError;
-};
 
 /// Decimals of seconds that are read as nanoseconds, see Row::scaled().
 inline constexpr int kNanosecondDecimals = 9;
 
 /// A row of a text file, cut into fields. Views last until the next row is read.
-class Row {
+class Row : public Place {
  public:
   const std::vector<std::string_view>& fields() const { return fields_; }
   size_t size() const { return fields_.size(); }
@@ -37,10 +31,10 @@ class Row {
   /// A finite number greater than zero. Throws RowError; of a zero it says that `constant` may be
   /// given instead of columns, if that is a key.
   double sigma(size_t column, const std::string& constant = {}) const;
-  /// Throws a RowError "file:line: what".
-  [[noreturn]] void fail(const std::string& what) const;
 
  private:
+  std::string where() const override;
+
   friend class TextTable;
   std::vector<std::string_view> fields_;
   const std::string* path_ = nullptr;
@@ -49,7 +43,7 @@ class Row {
 
 /// Rows of a text file, plain or gzip. Empty lines and those that begin with a comment sign are
 /// left out; quotes around a field, too.
-class TextTable {
+class TextTable : public InputFile {
  public:
   enum class Separator { comma, semicolon, tab, space, space_or_comma };
   /// Sign of decimals; automatic: the comma where it separates no columns and the row has no number
@@ -72,9 +66,10 @@ class TextTable {
   /// A part of the line that came last, as a row.
   const Row& split(std::string_view line);
 
-  const std::string& path() const { return path_; }
-  int64_t line() const { return row_.line_; }
-  double progress() const;
+  const std::string& path() const override { return path_; }
+  int64_t position() const override { return row_.line_; }
+  std::string place(int64_t line) const override;
+  double progress() const override;
 
  private:
   std::optional<std::string_view> read_line();

@@ -11,10 +11,12 @@
 #include "foucault/core/fix_quality.h"
 #include "foucault/core/time.h"
 #include "foucault/core/units.h"
+#include "foucault/rawlog/import_bag.h"
 #include "foucault/rawlog/import_csv.h"
 #include "foucault/rawlog/import_i2nav.h"
 #include "foucault/rawlog/import_nmea.h"
 #include "foucault/rawlog/import_rtklib.h"
+#include "foucault/rawlog/import_ulog.h"
 #include "texts/rawlog_summary.h"
 
 namespace foucault::app {
@@ -94,6 +96,57 @@ Action declare_i2nav(CLI::App& app) {
   };
 }
 
+Action declare_ulog(CLI::App& app) {
+  struct Options {
+    rawlog::UlogImport import;
+    std::optional<std::string> lever_arm;
+  };
+  const auto o = std::make_shared<Options>();
+  app.add_option("log", o->import.log, "ULog of PX4 (.ulg, or .gz)")->required();
+  app.add_option("--lever-arm", o->lever_arm,
+                 std::string(kLeverArmHelp) + "; without it EKF2_GPS_POS of the log");
+  add_common(app, o->import);
+  return [o](Call& call) {
+    if (o->lever_arm) o->import.lever_arm = parse_vector3("--lever-arm", *o->lever_arm);
+    o->import.progress = call.console.progress_of("importing");
+    report_summary(call.console, rawlog::import_ulog(o->import), o->import.out);
+  };
+}
+
+Action declare_bag(CLI::App& app) {
+  struct Options {
+    rawlog::BagImport import;
+    std::string lever_arm;
+    std::optional<std::string> gnss_sigma, velocity_sigma;
+  };
+  const auto o = std::make_shared<Options>();
+  app.add_option("bag", o->import.bag, "Bag of ROS 1 (.bag)")->required();
+  app.add_option("--imu-topic", o->import.imu_topic,
+                 "Of sensor_msgs/Imu; needed if there are several");
+  app.add_option("--gnss-topic", o->import.gnss_topic,
+                 "Of sensor_msgs/NavSatFix; needed if there are several");
+  app.add_option("--velocity-topic", o->import.velocity_topic,
+                 "Of geometry_msgs/TwistStamped, east, north, up, at the stamps of the fixes");
+  app.add_option("--imu-axes", o->import.imu_axes,
+                 "Sensor axes that look forward, right, down; without it x,-y,-z (REP 103)")
+      ->delimiter(',');
+  app.add_option("--gnss-sigma", o->gnss_sigma,
+                 "North, east, down [m], where the messages tell no covariance: X,Y,Z");
+  app.add_option("--velocity-sigma", o->velocity_sigma, "The same of velocities [m/s]");
+  app.add_option("--lever-arm", o->lever_arm, kLeverArmHelp)->required();
+  add_common(app, o->import);
+  return [o](Call& call) {
+    rawlog::BagImport& import = o->import;
+    import.lever_arm = parse_vector3("--lever-arm", o->lever_arm);
+    if (o->gnss_sigma) import.gnss_sigma = parse_vector3("--gnss-sigma", *o->gnss_sigma);
+    if (o->velocity_sigma) {
+      import.velocity_sigma = parse_vector3("--velocity-sigma", *o->velocity_sigma);
+    }
+    import.progress = call.console.progress_of("importing");
+    report_summary(call.console, rawlog::import_bag(import), import.out);
+  };
+}
+
 /// `rtklib`, `csv` and `nmea` take the same options.
 template <class Import>
 Action declare_mapped(CLI::App& app, rawlog::ImportSummary (*import)(const Import&),
@@ -137,17 +190,23 @@ Action declare_import(CLI::App& app) {
       "drive.rawlog\n"
       "  foucault import csv --mapping drive.yaml --out drive.rawlog\n"
       "  foucault import nmea --gnss drive.nmea --imu imu.csv --mapping drive.yaml --out "
-      "drive.rawlog");
+      "drive.rawlog\n"
+      "  foucault import ulog flight.ulg --lever-arm 0.1,0,-0.2 --out flight.rawlog\n"
+      "  foucault import bag drive.bag --lever-arm 0.3,0,-0.5 --out drive.rawlog");
   CLI::App* i2nav = app.add_subcommand("i2nav", "Text files of the i2Nav group (.txt, .pos, .nav)");
   CLI::App* rtklib = app.add_subcommand("rtklib", "A solution of RTKLIB (.pos) and an IMU table");
   CLI::App* csv = app.add_subcommand("csv", "Tables in columns, told by a mapping");
   CLI::App* nmea = app.add_subcommand("nmea", "NMEA 0183 of a receiver, and an IMU table");
-  for (CLI::App* format : {i2nav, rtklib, csv, nmea}) format->fallthrough();
+  CLI::App* ulog = app.add_subcommand("ulog", "A ULog of PX4: IMU and GNSS of an autopilot");
+  CLI::App* bag = app.add_subcommand("bag", "A bag of ROS 1: topics of an IMU and a receiver");
+  for (CLI::App* format : {i2nav, rtklib, csv, nmea, ulog, bag}) format->fallthrough();
   const Action import_from_i2nav = declare_i2nav(*i2nav);
   const Action import_from_rtklib = declare_mapped<rawlog::RtklibImport>(
       *rtklib, rawlog::import_rtklib, "RTKLIB's .pos, instead of the mapping's");
   const Action import_from_csv = declare_mapped<rawlog::CsvImport>(
       *csv, rawlog::import_csv, "GNSS table, instead of the mapping's");
+  const Action import_from_ulog = declare_ulog(*ulog);
+  const Action import_from_bag = declare_bag(*bag);
   const Action import_from_nmea = declare_mapped<rawlog::NmeaImport>(
       *nmea, rawlog::import_nmea, "NMEA sentences, instead of the mapping's", false);
   for (CLI::App* format : {rtklib, csv, nmea}) {
@@ -159,6 +218,8 @@ Action declare_import(CLI::App& app) {
     if (rtklib->parsed()) import_from_rtklib(call);
     if (csv->parsed()) import_from_csv(call);
     if (nmea->parsed()) import_from_nmea(call);
+    if (ulog->parsed()) import_from_ulog(call);
+    if (bag->parsed()) import_from_bag(call);
   };
 }
 

@@ -1,0 +1,414 @@
+#include "foucault/rawlog/import_bag.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <array>
+#include <cmath>
+#include <map>
+#include <set>
+#include <utility>
+
+#include "bag_file.h"
+#include "csv_readers.h"
+#include "foucault/core/constants.h"
+#include "foucault/core/error.h"
+#include "foucault/core/time.h"
+#include "foucault/rawlog/import_mapping.h"
+#include "import_run.h"
+#include "ros_layout.h"
+
+namespace foucault::rawlog {
+
+namespace {
+
+/// Where a field of numbers stands, if there is one; values as RosLayout::read() gives them.
+using Slot = std::optional<size_t>;
+using Values = std::vector<double>;
+
+Eigen::Vector3d vector(const Values& values, size_t first) {
+  return {values[first], values[first + 1], values[first + 2]};
+}
+
+/// Rows of a matrix whose lines are `width` long.
+Eigen::Matrix3d matrix(const Values& values, size_t first, size_t width) {
+  Eigen::Matrix3d m;
+  for (int i = 0; i < 3; ++i) {
+    m.row(i) = vector(values, first + static_cast<size_t>(i) * width);
+  }
+  return m;
+}
+
+/// North, east, down of a covariance of east, north, up.
+Eigen::Matrix3d ned(const Eigen::Matrix3d& enu) {
+  Eigen::Matrix3d turn;
+  turn << 0, 1, 0, 1, 0, 0, 0, 0, -1;
+  const Eigen::Matrix3d turned = turn * enu * turn.transpose();
+  return 0.5 * (turned + turned.transpose());
+}
+
+bool is_covariance(const Eigen::Matrix3d& m) {
+  return m.allFinite() && m.diagonal().minCoeff() > 0 && m.llt().info() == Eigen::Success;
+}
+
+std::array<Slot, 3> want_vector(RosLayout& layout, const std::string& path) {
+  return {layout.want(path + ".x"), layout.want(path + ".y"), layout.want(path + ".z")};
+}
+
+bool has_all(const std::array<Slot, 3>& slots) { return slots[0] && slots[1] && slots[2]; }
+
+Eigen::Vector3d vector(const Values& values, const std::array<Slot, 3>& slots) {
+  return {values[*slots[0]], values[*slots[1]], values[*slots[2]]};
+}
+
+/// A message type with the header's stamp.
+struct Fields {
+  explicit Fields(const std::string& definition) : layout(definition) {
+    seconds = layout.want("header.stamp.secs");
+    nanoseconds = layout.want("header.stamp.nsecs");
+  }
+
+  /// Of the header; of the recording where there is none.
+  int64_t stamp(const Values& values, const BagMessage& message) const {
+    constexpr double kMost = 0x1p32;
+    if (!seconds || !nanoseconds) return message.recorded_ns;
+    for (const double value : {values[*seconds], values[*nanoseconds]}) {
+      if (!(value >= 0 && value < kMost)) return message.recorded_ns;
+    }
+    const auto stamp = static_cast<int64_t>(values[*seconds]) * kNanosecondsPerSecond +
+                       static_cast<int64_t>(values[*nanoseconds]);
+    return stamp == 0 ? message.recorded_ns : stamp;
+  }
+
+  RosLayout layout;
+  Slot seconds, nanoseconds;
+};
+
+struct RosImu : Fields {
+  explicit RosImu(const std::string& definition)
+      : Fields(definition),
+        gyro(want_vector(layout, "angular_velocity")),
+        accel(want_vector(layout, "linear_acceleration")),
+        gyro_covariance(layout.want("angular_velocity_covariance", 9)),
+        accel_covariance(layout.want("linear_acceleration_covariance", 9)) {}
+  bool complete() const { return has_all(gyro) && has_all(accel); }
+
+  /// A covariance that begins with -1 says so.
+  bool absent(const Values& values) const {
+    return (gyro_covariance && values[*gyro_covariance] == -1) ||
+           (accel_covariance && values[*accel_covariance] == -1);
+  }
+
+  std::array<Slot, 3> gyro, accel;
+  Slot gyro_covariance, accel_covariance;
+};
+
+struct RosFix : Fields {
+  explicit RosFix(const std::string& definition)
+      : Fields(definition),
+        position{layout.want("latitude"), layout.want("longitude"), layout.want("altitude")},
+        status(layout.want("status.status")),
+        covariance(layout.want("position_covariance", 9)),
+        covariance_type(layout.want("position_covariance_type")) {}
+  bool complete() const { return has_all(position); }
+
+  std::array<Slot, 3> position;
+  Slot status, covariance, covariance_type;
+};
+
+struct RosVelocity : Fields {
+  explicit RosVelocity(const std::string& definition)
+      : Fields(definition), velocity(want_vector(layout, "twist.linear")) {
+    if (has_all(velocity)) return;
+    velocity = want_vector(layout, "twist.twist.linear");
+    covariance = layout.want("twist.covariance", 36);
+  }
+  bool complete() const { return has_all(velocity); }
+
+  std::array<Slot, 3> velocity;
+  Slot covariance;
+};
+
+// Topics ----------------------------------------------------------------------------------------
+
+template <class Kind>
+bool can_be(const BagConnection& connection) {
+  try {
+    return Kind(connection.definition).complete();
+  } catch (const BadRecord&) {
+    return false;
+  }
+}
+
+std::string listed(const BagConnections& connections) {
+  std::set<std::string> topics;
+  for (const auto& [id, c] : connections) topics.insert(fmt::format("{} ({})", c.topic, c.type));
+  std::string list = topics.empty() ? "none" : "";
+  for (const std::string& topic : topics) list += (list.empty() ? "" : ", ") + topic;
+  for (char& c : list) {
+    if (static_cast<unsigned char>(c) < ' ') c = '?';  // an error is one line
+  }
+  return list;
+}
+
+/// The topic that is to be taken: the given one, or the only one with what a `Kind` needs.
+template <class Kind>
+std::string topic_of(const BagImport& options, const BagConnections& connections,
+                     const std::optional<std::string>& given, const char* option,
+                     const char* needs) {
+  std::set<std::string> found;
+  for (const auto& [id, connection] : connections) {
+    if (given && connection.topic != *given) continue;
+    if (can_be<Kind>(connection)) found.insert(connection.topic);
+  }
+  if (found.size() == 1) return *found.begin();
+  if (given) {
+    throw UsageError(fmt::format("--{}-topic {}: '{}' has no such topic with {}; it has {}", option,
+                                 *given, options.bag, needs, listed(connections)));
+  }
+  if (found.empty()) {
+    throw DataError(fmt::format("'{}' has no topic with {}; it has {}", options.bag, needs,
+                                listed(connections)));
+  }
+  throw UsageError(fmt::format("'{}' has {} topics with {}: choose one by --{}-topic; it has {}",
+                               options.bag, found.size(), needs, option, listed(connections)));
+}
+
+// Readers ---------------------------------------------------------------------------------------
+
+/// Messages of some topics of a bag.
+class BagReader : public RecordReader {
+ public:
+  explicit BagReader(const std::string& path) : bag_(path) {}
+
+  const InputFile& table() const override { return bag_.file(); }
+
+ protected:
+  const Place& place() const { return bag_.file(); }
+  const std::string& topic_of(const BagMessage& message) const {
+    const auto found = bag_.connections().find(message.connection);
+    if (found == bag_.connections().end()) {
+      place().fail(
+          fmt::format("a message of connection {}, which nothing defines; the bag is "
+                      "damaged here",
+                      message.connection));
+    }
+    return found->second.topic;
+  }
+  std::optional<BagMessage> next_message() { return bag_.next(); }
+
+  /// The layout of a message's connection.
+  template <class Kind>
+  const Kind& fields_of(const BagMessage& message, std::map<uint32_t, Kind>& known) const {
+    const auto found = known.find(message.connection);
+    if (found != known.end()) return found->second;
+    const std::string& definition = bag_.connections().at(message.connection).definition;
+    return contained([&]() -> const Kind& {
+      Kind fields(definition);
+      if (!fields.complete()) place().fail("a message whose definition lacks what is needed");
+      return known.emplace(message.connection, std::move(fields)).first->second;
+    });
+  }
+
+  Values values_of(const Fields& fields, const BagMessage& message) const {
+    return contained([&] { return fields.layout.read(message.bytes); });
+  }
+
+  StampOrder order_;
+
+ private:
+  template <class Action>
+  auto contained(Action action) const -> decltype(action()) {
+    try {
+      return action();
+    } catch (const RecordTooShort&) {
+      place().fail("a message that is shorter than its definition; the bag is damaged here");
+    } catch (const BadRecord& error) {
+      place().fail(fmt::format("{}; the bag is damaged here", error.what()));
+    }
+  }
+
+  BagFile bag_;
+};
+
+class BagImu : public BagReader {
+ public:
+  BagImu(const std::string& path, std::string topic) : BagReader(path), topic_(std::move(topic)) {}
+
+  std::optional<Record> next() override {
+    while (const std::optional<BagMessage> message = next_message()) {
+      if (topic_of(*message) == topic_) return sample(*message);
+    }
+    return std::nullopt;
+  }
+
+ private:
+  imu::ImuSample sample(const BagMessage& message) {
+    const RosImu& fields = fields_of(message, fields_);
+    const Values values = values_of(fields, message);
+    if (fields.absent(values)) {
+      place().fail(
+          "an IMU sample that says it has no rates or accelerations; choose another "
+          "topic by --imu-topic");
+    }
+    imu::ImuSample sample;
+    sample.gyro_b = vector(values, fields.gyro);
+    sample.accel_b = vector(values, fields.accel);
+    if (!sample.gyro_b.allFinite() || !sample.accel_b.allFinite()) {
+      place().fail("an IMU sample with a value that is not finite");
+    }
+    sample.t_ns = checked_stamp(place(), fields.stamp(values, message));
+    order_.check(place(), sample.t_ns,
+                 sample.gyro_b != last_.gyro_b || sample.accel_b != last_.accel_b);
+    last_ = sample;
+    return sample;
+  }
+
+  std::string topic_;
+  std::map<uint32_t, RosImu> fields_;
+  imu::ImuSample last_;
+};
+
+/// Fixes, each with the velocity of its stamp, which may come before or behind it.
+class BagGnss : public BagReader {
+ public:
+  BagGnss(const BagImport& options, std::string topic)
+      : BagReader(options.bag),
+        topic_(std::move(topic)),
+        velocity_topic_(options.velocity_topic),
+        sigma_(options.gnss_sigma),
+        velocity_sigma_(options.velocity_sigma) {}
+
+  int64_t without_fix() const override { return without_fix_; }
+
+  std::optional<Record> next() override {
+    while (const std::optional<BagMessage> message = next_message()) {
+      const std::string& topic = topic_of(*message);
+      std::optional<GnssFix> ready;
+      if (velocity_topic_ && topic == *velocity_topic_) {
+        ready = take_velocity(*message);
+      } else if (topic == topic_) {
+        ready = take_fix(*message);
+      }
+      if (ready) return *ready;
+    }
+    return std::exchange(pending_, std::nullopt);
+  }
+
+ private:
+  struct Velocity {
+    int64_t t_ns = 0;
+    Eigen::Vector3d velocity_n = Eigen::Vector3d::Zero();
+    Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  };
+
+  static bool same_stamp(int64_t a_ns, int64_t b_ns) {
+    constexpr int64_t kSame = 10'000'000;  // [ns]
+    return std::abs(a_ns - b_ns) < kSame;
+  }
+
+  /// The fix that is complete by it.
+  std::optional<GnssFix> take_fix(const BagMessage& message) {
+    const RosFix& fields = fields_of(message, fields_);
+    const Values values = values_of(fields, message);
+    if (fields.status && values[*fields.status] < 0) {
+      ++without_fix_;
+      return std::nullopt;
+    }
+    const GnssFix fix = fix_of(fields, values, message);
+    if (!velocity_topic_) return fix;
+    std::optional<GnssFix> before = std::exchange(pending_, fix);
+    join();
+    return before;
+  }
+
+  std::optional<GnssFix> take_velocity(const BagMessage& message) {
+    const RosVelocity& fields = fields_of(message, velocity_fields_);
+    const Values values = values_of(fields, message);
+    const Eigen::Vector3d enu = vector(values, fields.velocity);
+    if (!enu.allFinite()) return std::nullopt;  // no velocity at this time
+    Velocity velocity;
+    velocity.t_ns = fields.stamp(values, message);
+    velocity.velocity_n = {enu.y(), enu.x(), -enu.z()};
+    constexpr size_t kWidth = 6;
+    if (fields.covariance) velocity.covariance = ned(matrix(values, *fields.covariance, kWidth));
+    if (!is_covariance(velocity.covariance)) {
+      velocity.covariance = constant(velocity_sigma_, "velocity");
+    }
+    velocity_ = velocity;
+    return join() ? std::exchange(pending_, std::nullopt) : std::nullopt;
+  }
+
+  bool join() {
+    if (!pending_ || !velocity_ || !same_stamp(pending_->t_ns, velocity_->t_ns)) return false;
+    pending_->velocity_n = velocity_->velocity_n;
+    pending_->velocity_covariance = velocity_->covariance;
+    return true;
+  }
+
+  GnssFix fix_of(const RosFix& fields, const Values& values, const BagMessage& message) {
+    const Eigen::Vector3d p = vector(values, fields.position);
+    if (!p.allFinite()) place().fail("a fix with a value that is not finite");
+    GnssFix fix;
+    fix.antenna = checked_position(place(), p.x() * kDegree, p.y() * kDegree, p.z());
+    const bool known =
+        fields.covariance && fields.covariance_type && values[*fields.covariance_type] > 0;
+    if (known) fix.position_covariance = ned(matrix(values, *fields.covariance, 3));
+    if (!is_covariance(fix.position_covariance)) {
+      fix.position_covariance = constant(sigma_, "gnss");
+    }
+    if (fields.status) {
+      fix.quality = values[*fields.status] > 0 ? FixQuality::differential : FixQuality::single;
+    }
+    fix.t_ns = checked_stamp(place(), fields.stamp(values, message));
+    order_.check(place(), fix.t_ns);
+    return fix;
+  }
+
+  Eigen::Matrix3d constant(const std::optional<Eigen::Vector3d>& sigma, const char* option) const {
+    if (sigma) return sigma->cwiseAbs2().asDiagonal();
+    throw UsageError(
+        fmt::format("{}: the message tells no covariance; give --{}-sigma "
+                    "NORTH,EAST,DOWN",
+                    table().place(table().position()), option));
+  }
+
+  std::string topic_;
+  std::optional<std::string> velocity_topic_;
+  std::optional<Eigen::Vector3d> sigma_, velocity_sigma_;
+  std::map<uint32_t, RosFix> fields_;
+  std::map<uint32_t, RosVelocity> velocity_fields_;
+  std::optional<GnssFix> pending_;
+  std::optional<Velocity> velocity_;
+  int64_t without_fix_ = 0;
+};
+
+void check_sigma(const std::optional<Eigen::Vector3d>& sigma, const char* option) {
+  if (!sigma || sigma->minCoeff() > 0) return;
+  throw UsageError(fmt::format("--{}-sigma: three numbers greater than zero are needed", option));
+}
+
+}  // namespace
+
+ImportSummary import_bag(const BagImport& options) {
+  check_sigma(options.gnss_sigma, "gnss");
+  check_sigma(options.velocity_sigma, "velocity");
+  ImuMapping imu;
+  imu.axes = options.imu_axes;
+  ImportInputs inputs;
+  naming_mapping("--imu-axes", [&] { inputs.mounting = imu.mounting(); });
+  const BagConnections connections = connections_of(options.bag);
+  inputs.imu = std::make_unique<BagImu>(
+      options.bag, topic_of<RosImu>(options, connections, options.imu_topic, "imu",
+                                    "angular_velocity and linear_acceleration"));
+  inputs.gnss = std::make_unique<BagGnss>(
+      options, topic_of<RosFix>(options, connections, options.gnss_topic, "gnss",
+                                "latitude, longitude and altitude"));
+  if (options.velocity_topic) {
+    topic_of<RosVelocity>(options, connections, options.velocity_topic, "velocity", "a twist");
+  }
+  inputs.lever_arm_v = options.lever_arm;
+  return run_import(options, std::move(inputs));
+}
+
+}  // namespace foucault::rawlog
