@@ -196,7 +196,7 @@ std::optional<Number> take(std::string_view& text, std::string_view delimiter, N
 }
 
 /// hh:mm:ss.sss as nanoseconds; the last second of a day may be a leap second.
-int64_t time_of_day_ns(const Row& row) {
+int64_t clock_time_ns(const Row& row) {
   std::string_view text = row.text(1);
   const std::optional<int> hours = take(text, ":", 24);
   const std::optional<int> minutes = hours ? take(text, ":", 60) : std::nullopt;
@@ -311,7 +311,7 @@ class PosReader : public rawlog::RecordReader {
     const bool date = row.text(0).find('/') != std::string_view::npos;
     // Week and seconds, like the date, are of the clock that the header names.
     const int64_t week = date ? 0 : row.integer(0);
-    const int64_t tow_ns = offset_ns_ + (date ? date_ns(row) + time_of_day_ns(row) - kGpsEpochNs
+    const int64_t tow_ns = offset_ns_ + (date ? date_ns(row) + clock_time_ns(row) - kGpsEpochNs
                                               : row.scaled(1, kNanosecondDecimals));
     if (!header_.utc) return gps_stamp(row, week, tow_ns);
     const GpsTime clock = checked_gps_time(row, week, tow_ns);

@@ -39,7 +39,7 @@ bool checksum_is_right(std::string_view sentence, size_t star) {
 }
 
 /// hhmmss.sss as nanoseconds; the last second of a day may be a leap second.
-int64_t time_of_day_ns(const Row& row) {
+int64_t sentence_time_ns(const Row& row) {
   const int64_t digits = row.scaled(1, kNanosecondDecimals);
   const int64_t whole = digits / kNanosecondsPerSecond;
   const int64_t hours = whole / 10'000;
@@ -205,7 +205,7 @@ void NmeaEpochs::take_vtg(const Row& row) {
 }
 
 void NmeaEpochs::take_timed(std::string_view type, const Row& row) {
-  const int64_t time_ns = time_of_day_ns(row);
+  const int64_t time_ns = sentence_time_ns(row);
   if (!current_ || current_->time_of_day_ns != time_ns) {
     finish();
     current_.emplace();
@@ -237,7 +237,7 @@ void NmeaEpochs::take_position(const Row& row) {
 void NmeaEpochs::take_date(const Row& row, const std::string& date, const char* format) {
   const std::optional<int64_t> midnight = midnight_ns(date, format);
   if (!midnight) row.fail(fmt::format("'{}' is no date; correct or remove the line", date));
-  dated_ns_ = *midnight + time_of_day_ns(row);
+  dated_ns_ = *midnight + sentence_time_ns(row);
 }
 
 void NmeaEpochs::take_rmc(const Row& row) {

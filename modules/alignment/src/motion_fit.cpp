@@ -13,7 +13,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kLatency = 0.1;            // [s]: velocities lag, IMU stamps are late
 constexpr double kJerk = 1.0;               // density of a car's jerk [m/s^3/sqrt(Hz)]
 constexpr double kUnknownVelocity = 100;    // [m/s]
 constexpr double kUnknownAcceleration = 3;  // [m/s^2]
@@ -95,7 +94,7 @@ MotionFit fit_motion(const std::vector<GnssFix>& fixes) {
   }
   fit.acceleration_n = (fit.velocity_n - fit.begin_velocity_n) / fit.duration;
   fit.covariance.topLeftCorner<3, 3>() +=
-      kLatency * kLatency * fit.acceleration_n * fit.acceleration_n.transpose();
+      kVelocityLatency * kVelocityLatency * fit.acceleration_n * fit.acceleration_n.transpose();
   return fit;
 }
 

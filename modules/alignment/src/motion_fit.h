@@ -7,6 +7,9 @@
 
 namespace foucault::alignment {
 
+/// Measured velocities lag, and IMU stamps are late, by up to this [s].
+constexpr double kVelocityLatency = 0.1;
+
 /// Motion of the antenna over a stretch, estimated from its fixes.
 struct MotionFit {
   Eigen::Vector3d begin_velocity_n = Eigen::Vector3d::Zero();  ///< [m/s], at the first fix

@@ -18,7 +18,6 @@ constexpr double kStandsOut = 25;  // of a chi-square of three: 2e-5 by chance
 constexpr double kMedian = 2.366;  // of a chi-square of three
 constexpr std::size_t kRemembered = 301;
 constexpr std::size_t kFewest = 5;  // squares of which a median tells something
-constexpr double kLatency = 0.1;    // [s], of measured velocities
 
 }  // namespace
 
@@ -35,10 +34,12 @@ void Trial::propagate(const ImuIncrement& increment) {
 void Trial::update(const GnssFix& fix) {
   use(measurement::gnss_position(fix));
   if (!velocity_is_better(fix)) return;
-  GnssFix delayed = fix;  // late by up to kLatency: as much as the vehicle accelerates in it
+  GnssFix delayed =
+      fix;  // late by up to kVelocityLatency: as much as the vehicle accelerates in it
   const Eigen::Vector3d acceleration_n =
       navigator_.state().q_n_b * rates_.accel_b + Eigen::Vector3d(0, 0, kStandardGravity);
-  delayed.velocity_covariance += kLatency * kLatency * acceleration_n * acceleration_n.transpose();
+  delayed.velocity_covariance +=
+      kVelocityLatency * kVelocityLatency * acceleration_n * acceleration_n.transpose();
   use(measurement::gnss_velocity(delayed));
 }
 

@@ -6,6 +6,7 @@
 #include "foucault/core/position.h"
 #include "foucault/core/so3.h"
 #include "foucault/core/time.h"
+#include "foucault/diagnosis/missing.h"
 #include "foucault/geodesy/course.h"
 #include "foucault/geodesy/local_frame.h"
 
@@ -16,7 +17,6 @@ using Eigen::Vector3d;
 
 constexpr double kLongestOffset = 1, kStep = 0.02;  // [s]
 constexpr double kGrid = 0.02;                      // [s] of the motion
-constexpr double kLargestHole = 0.1;                // [s], over which bumps may be missed
 /// [s]; chosen: gyroscopes of 600 deg/h tilt it by 3 deg, and turns are shorter.
 constexpr double kUpMemory = 20;
 constexpr double kSpacing = 0.95;  // [s] between fixes, 1 s but for jitter
@@ -52,7 +52,7 @@ void AccelerationMatch::restart(int64_t t_ns) {
 }
 
 void AccelerationMatch::add(const ImuIncrement& increment) {
-  const bool hole = last_ns_ && seconds_between(*last_ns_, increment.t_begin_ns) > kLargestHole;
+  const bool hole = last_ns_ && seconds_between(*last_ns_, increment.t_begin_ns) > kLongestMissing;
   if (!last_ns_ || hole) restart(increment.t_begin_ns);
   last_ns_ = increment.t_end_ns;
   const double dt = increment.dt();

@@ -7,6 +7,7 @@
 #include "foucault/core/median.h"
 #include "foucault/core/so3.h"
 #include "foucault/core/time.h"
+#include "foucault/diagnosis/missing.h"
 #include "foucault/geodesy/local_frame.h"
 #include "foucault/geodesy/wgs84.h"
 #include "foucault/imu/increments.h"
@@ -20,7 +21,6 @@ using Eigen::Vector3d;
 /// which shortens its mean by 2 %.
 constexpr double kLongestWindow = 20;  // [s]
 constexpr double kLargestTurn = 1;     // [rad]
-constexpr double kLargestHole = 0.1;   // [s], over which bumps may be missed
 /// A tenth of gravity, so that ten windows tell the factor to 4 %, a fifth of what is judged.
 constexpr double kPrecise = 1;              // [m/s^2], sigma of the acceleration by fixes, any axis
 constexpr std::size_t kFewestWindows = 10;  // windows
@@ -56,7 +56,7 @@ void ForceMatch::Motion::add(const ImuIncrement& increment) {
 }
 
 void ForceMatch::add(const ImuIncrement& increment) {
-  const bool hole = last_ns_ && seconds_between(*last_ns_, increment.t_begin_ns) > kLargestHole;
+  const bool hole = last_ns_ && seconds_between(*last_ns_, increment.t_begin_ns) > kLongestMissing;
   if (hole) {
     a_.reset();
     due_.reset();

@@ -7,6 +7,7 @@
 
 #include "foucault/core/error.h"
 #include "foucault/core/time.h"
+#include "foucault/diagnosis/missing.h"
 #include "foucault/diagnosis/side_facts.h"
 #include "foucault/imu/increments.h"
 
@@ -21,7 +22,7 @@ constexpr double kFineStep = 0.02;     // [s]
 /// Ratio of what turns do not explain. By chance 40 courses leave a quarter once in a million
 /// times.
 constexpr double kClearly = 0.25;
-constexpr double kAgree = 0.9;  // as in turn_match.cpp
+constexpr double kTurnsAgree = 0.9;  // as in turn_match.cpp
 /// The mean of the specific force is looked at twice: when bumps have averaged out, and when it
 /// must be gravity, see force_facts.cpp.
 constexpr double kFirstForceLook = 10;   // [s]
@@ -45,9 +46,9 @@ Plausibility::Plausibility(const Eigen::Quaterniond& q_v_b)
 
 /// Over a few samples that are missing the motion goes on: the matchers add it up.
 void Plausibility::watch(const ImuIncrement& given) {
-  constexpr double kMissing = 0.1;  // [s], the hole at which the matchers begin anew
   const double gap = now_ns_ > 0 ? seconds_between(now_ns_, given.t_begin_ns) : 0;
-  const ImuIncrement increment = gap > 0 && gap <= kMissing ? imu::begun_at(given, now_ns_) : given;
+  const ImuIncrement increment =
+      gap > 0 && gap <= kLongestMissing ? imu::begun_at(given, now_ns_) : given;
   now_ns_ = increment.t_end_ns;
   mean_force_.add(increment);
   acceleration_match_.add(increment);
@@ -73,7 +74,7 @@ ForceFacts Plausibility::force() const {
 std::optional<TurnMatch> Plausibility::turns() const {
   std::optional<TurnMatch> near = near_.best();
   const std::optional<TurnMatch> far = near ? far_.best() : std::nullopt;
-  if (!far || far->correlation < kAgree || std::abs(far->offset_s) < kNear) return near;
+  if (!far || far->correlation < kTurnsAgree || std::abs(far->offset_s) < kNear) return near;
   const auto unexplained = [](const TurnMatch& match) {
     return 1 - match.correlation * match.correlation;
   };
@@ -118,7 +119,7 @@ void Plausibility::look_at_turns() {
   const bool forces_tell = forces && forces->is_side_known;
   // Outliers turn courses as well, for a while.
   const bool is_long = match->samples >= kLong && match->turned >= kLongTurn;
-  if (!match->is_enough() || match->correlation > -kAgree || !(forces_tell || is_long)) return;
+  if (!match->is_enough() || match->correlation > -kTurnsAgree || !(forces_tell || is_long)) return;
   if (const std::optional<WrongForce> side = wrong_side(*match, forces, force().mean)) {
     throw DataError(fmt::format("{}; {}", side->text, side->remedy));
   }

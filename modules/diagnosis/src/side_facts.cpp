@@ -12,7 +12,7 @@ namespace {
 constexpr double kQuarter = kPi / 4;
 /// Of accelerations, where they tell a side against the gyroscopes; cars and an aerobatic flight
 /// have 0.95 and more.
-constexpr double kAgree = 0.9;
+constexpr double kForcesAgree = 0.9;
 
 WrongForce opposite_sign(const std::string& seen, bool upside_down) {
   return {"the accelerometer has the opposite sign: " + seen,
@@ -39,7 +39,7 @@ std::optional<WrongForce> wrong_side(const TurnMatch& turns,
   const bool is_side_known = accelerations && accelerations->is_side_known;
   const bool mirrored = is_side_known && accelerations->mirrored;
   if (!turns_against(turns)) {
-    if (!mirrored || accelerations->correlation < kAgree) return std::nullopt;
+    if (!mirrored || accelerations->correlation < kForcesAgree) return std::nullopt;
     return WrongForce{"the specific force is on the other side than turns are",
                       "correct the signs of the accelerometer's axes in the import"};
   }

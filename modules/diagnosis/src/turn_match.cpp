@@ -9,15 +9,15 @@
 #include "foucault/core/position.h"
 #include "foucault/core/so3.h"
 #include "foucault/core/time.h"
+#include "foucault/diagnosis/missing.h"
 #include "foucault/geodesy/course.h"
 #include "foucault/geodesy/local_frame.h"
 
 namespace foucault::diagnosis {
 namespace {
 
-constexpr double kGrid = 0.02;        // [s] of the turns: 50 Hz, no vehicle turns faster
-constexpr double kLargestHole = 0.1;  // [s], in which a turn may be missed: 6 deg at kFastestTurn
-constexpr double kUpMemory = 20;      // [s]; chosen: longer than a bend or an acceleration
+constexpr double kGrid = 0.02;    // [s] of the turns: 50 Hz, no vehicle turns faster
+constexpr double kUpMemory = 20;  // [s]; chosen: longer than a bend or an acceleration
 /// A way of 15 sigmas has a course to 0.1 rad, a tenth of a bend. That by way and time is chosen.
 constexpr double kWaySigmas = 15;
 constexpr double kShortestWay = 2;        // [m]
@@ -94,7 +94,7 @@ void TurnMatcher::add(const ImuIncrement& increment) {
   const double dt = increment.dt();
   up_memory_ = std::min(up_memory_ + dt, kUpMemory);
   up_b_ += dt / up_memory_ * (increment.dvel_b / dt - up_b_);
-  const bool hole = last_ns_ && seconds_between(*last_ns_, increment.t_begin_ns) > kLargestHole;
+  const bool hole = last_ns_ && seconds_between(*last_ns_, increment.t_begin_ns) > kLongestMissing;
   if (!last_ns_ || hole) restart(increment.t_begin_ns);
   last_ns_ = increment.t_end_ns;
   const double begin = turn_;
