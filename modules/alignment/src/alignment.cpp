@@ -154,6 +154,7 @@ class Aligner::Impl {
   bool rest_is_proven() const;
   std::vector<GnssFix> fixes_at_rest() const;
   void begin(AlignmentFindings findings, bool at_rest);
+  void drive_over_kept();
 
   void throw_if_turned_over() const;
   bool beginning_is_wrong() const;
@@ -339,6 +340,12 @@ void Aligner::Impl::begin(AlignmentFindings findings, bool at_rest) {
   }
   rest_ = RestDetector(options_.min_rest_s, options_.max_rest_s);
   begin_ns_ = findings.fix.t_ns;
+  drive_over_kept();
+  decide();
+}
+
+/// What came after the beginning until it was known to be one.
+void Aligner::Impl::drive_over_kept() {
   for (const Step& step : track_.steps()) {
     if (const auto* increment = std::get_if<ImuIncrement>(&step)) {
       if (increment->t_begin_ns >= begin_ns_) bank_.propagate(*increment);
@@ -346,7 +353,6 @@ void Aligner::Impl::begin(AlignmentFindings findings, bool at_rest) {
       bank_.update(fix);
     }
   }
-  decide();
 }
 
 // The decision ------------------------------------------------------------------------------------
