@@ -115,7 +115,6 @@ state::StateMatrix covariance_of(const AlignmentFindings& findings, const Quater
   by_attitude.block<3, 3>(0, kForce) = keep_heading * level;
   by_attitude.block<3, 3>(0, kScale) = keep_heading * level * f.asDiagonal();
   by_attitude.block<3, 3>(0, kMotion + 3) = keep_heading * level * R.transpose();
-  by_attitude.block<3, 3>(0, kMotion) = about * findings.heading_by_velocity.transpose();
   by_attitude.col(kHeading) = about;
 
   const Vector3d rate_b =

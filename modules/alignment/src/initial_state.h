@@ -25,9 +25,7 @@ struct AlignmentFindings {
   Eigen::Matrix3d specific_force_covariance = Eigen::Matrix3d::Zero();  ///< noise, not bias
 
   double heading = 0;           ///< of the vehicle [rad]
-  double heading_variance = 0;  ///< [rad^2], what does not come from antenna_velocity_n
-  /// d heading / d velocity error, zero if the heading was not read off this velocity.
-  Eigen::Vector3d heading_by_velocity = Eigen::Vector3d::Zero();
+  double heading_variance = 0;  ///< [rad^2], independent of all else
 
   Eigen::Vector3d gyro_b = Eigen::Vector3d::Zero();  ///< mean rate measured [rad/s]
   Eigen::Vector3d turn_n = Eigen::Vector3d::Zero();  ///< true mean rate of b against n [rad/s]

@@ -92,7 +92,6 @@ void RestDetector::end_block() {
     begin_anew(block.begin_ns);
   }
   blocks_.push_back(block);
-  longest_s_ = std::max(longest_s_, seconds_between(blocks_.front().begin_ns, block.end_ns));
 }
 
 bool RestDetector::is_still(const RestBlock& block) const {

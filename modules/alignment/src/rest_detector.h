@@ -53,7 +53,6 @@ class RestDetector {
 
   /// Where the rest, or what may become one, begins.
   int64_t begin_ns() const;
-  double longest_s() const { return longest_s_; }  ///< for messages
 
  private:
   std::size_t blocks_used() const;
@@ -71,7 +70,6 @@ class RestDetector {
   std::deque<GnssFix> fixes_;
   int disturbed_ = 0;
   bool ended_ = false;
-  double longest_s_ = 0;
 };
 
 }  // namespace foucault::alignment

@@ -121,10 +121,10 @@ void CarriedBack::reuse(double factor, const imu::ImuNoise& noise) {
   using Vector9d = Eigen::Matrix<double, 9, 1>;
   covariance *= factor;
   Vector9d change = Vector9d::Zero();
-  const auto know = [&](int row, double bias, double sigma) {
+  const auto know = [&](int row, double value, double sigma) {
     const double variance = factor / (factor - 1) * sigma * sigma;
     const Vector9d K = covariance.col(row) / (covariance(row, row) + variance);
-    change += K * (-bias - change[row]);
+    change += K * (-value - change[row]);
     covariance -= (K * covariance.row(row)).eval();
   };
   for (int axis = 0; axis < 3; ++axis) {

@@ -64,7 +64,6 @@ TEST_F(RestDetectorTest, MeansAreThoseOfTheRest) {
   EXPECT_LT(means.gyro_variance.norm(), 1e-20);
   EXPECT_EQ(detector_.first_fix()->t_ns, 0);
   EXPECT_EQ(detector_.begin_ns(), 0);
-  EXPECT_EQ(detector_.longest_s(), 10);
 }
 
 TEST_F(RestDetectorTest, IsNotEstablishedByTheImuAlone) {
