@@ -1,5 +1,7 @@
 #include "settings.h"
 
+#include "foucault/rawlog/recording_notes.h"
+
 namespace foucault::app {
 
 void OutputOptions::fields(ConfigFields& f) {
@@ -26,6 +28,12 @@ void Settings::fields(ConfigFields& f) {
   f.section("rawlog", rawlog, "what is taken from a log with several sensors");
   f.section("outages", outages, "simulated outages: commands evaluate and tune");
   f.section("output", output, "what is written");
+}
+
+Settings settings_for(const std::string& log, const Settings& settings) {
+  Settings completed = settings;
+  completed.imu = settings.imu.completed_by(rawlog::read_notes(log).imu);
+  return completed;
 }
 
 std::string settings_help() {

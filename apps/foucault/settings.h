@@ -44,6 +44,10 @@ class Settings : public Configurable {
   void fields(ConfigFields& f) override;
 };
 
+/// With what the notes of a log say, where the settings leave it to the log.
+/// Throws DataError as rawlog::read_notes.
+Settings settings_for(const std::string& log, const Settings& settings);
+
 /// Every key of Settings, for --help-config.
 std::string settings_help();
 

@@ -11,6 +11,7 @@
 #include "foucault/geodesy/wgs84.h"
 #include "foucault/rawlog/rawlog_source.h"
 #include "mrpt_convert.h"
+#include "mrpt_records.h"
 
 /// GPS records of MRPT to fixes and back.
 namespace foucault::rawlog {
@@ -30,6 +31,7 @@ constexpr double kOpenVerticalSigma = 10;
 constexpr double kVelocitySigma = 0.1;
 /// Spherical error probable of an isotropic error of sigma 1.
 constexpr double kSepPerSigma = 1.5382;
+constexpr uint32_t kMostSatellites = 256;
 
 template <class Message>
 const Message* message(const mrpt::obs::CObservationGPS& gps) {
@@ -139,6 +141,10 @@ gnss::Message_NV_OEM6_BESTPOS bestpos_of(const GnssFix& fix) {
   fields.lat_sigma = static_cast<float>(sigma.x());
   fields.lon_sigma = static_cast<float>(sigma.y());
   fields.hgt_sigma = static_cast<float>(sigma.z());
+  fields.num_sats_sol =
+      static_cast<uint8_t>(std::clamp(fix.details.satellites.value_or(0), 0, 255));
+  fields.num_sats_tracked = fields.num_sats_sol;
+  fields.diff_age = static_cast<float>(fix.details.correction_age.value_or(0));
   return message;
 }
 
@@ -249,6 +255,22 @@ std::optional<FixQuality> quality_of_nmea(int indicator) {
   }
 }
 
+uint8_t nmea_of_quality(FixQuality quality) {
+  switch (quality) {
+    case FixQuality::fixed_rtk:
+      return 4;
+    case FixQuality::float_rtk:
+      return 5;
+    case FixQuality::ppp:
+    case FixQuality::differential:
+      return 2;
+    case FixQuality::single:
+    case FixQuality::unknown:
+      break;
+  }
+  return 1;
+}
+
 std::optional<GnssFix> fix_of_gga(const gnss::Message_NMEA_GGA& message) {
   const auto fields = message.fields;
   const std::optional<FixQuality> quality = quality_of_nmea(fields.fix_quality);
@@ -264,21 +286,55 @@ std::optional<GnssFix> fix_of_gga(const gnss::Message_NMEA_GGA& message) {
   return fix;
 }
 
-void add_ground_velocity(double speed, double course, GnssFix& fix) {
-  fix.velocity_n = Eigen::Vector3d(speed * std::cos(course), speed * std::sin(course), 0);
-  fix.velocity_covariance = diagonal(kSpeedSigma, kSpeedSigma, kOpenVerticalSigma);
+gnss::UTC_time time_of_day(int64_t t_ns) {
+  constexpr int64_t kMinute = 60 * kNanosecondsPerSecond;
+  const int64_t of_day_ns =
+      (t_ns % kNanosecondsPerDay + kNanosecondsPerDay) % kNanosecondsPerDay;  // before 1970 too
+  gnss::UTC_time time;
+  time.hour = static_cast<uint8_t>(of_day_ns / kMinute / 60);
+  time.minute = static_cast<uint8_t>(of_day_ns / kMinute % 60);
+  time.sec = to_seconds(of_day_ns % kMinute);
+  return time;
 }
 
-void add_nmea_velocity(const mrpt::obs::CObservationGPS& gps, GnssFix& fix) {
-  const auto* rmc = message<gnss::Message_NMEA_RMC>(gps);
-  const auto* vtg = message<gnss::Message_NMEA_VTG>(gps);
-  if (rmc != nullptr && rmc->fields.validity_char == 'A') {
-    add_ground_velocity(rmc->fields.speed_knots * kKnot, rmc->fields.direction_degrees * kDegree,
-                        fix);
-  } else if (rmc == nullptr && vtg != nullptr) {
-    add_ground_velocity(vtg->fields.ground_speed_knots * kKnot, vtg->fields.true_track * kDegree,
-                        fix);
+/// What programs look for that know nothing but NMEA (rawlog-edit); BESTPOS says the same better.
+gnss::Message_NMEA_GGA gga_of(const GnssFix& fix) {
+  gnss::Message_NMEA_GGA message;
+  auto& fields = message.fields;
+  fields.UTCTime = time_of_day(fix.t_ns);
+  fields.latitude_degrees = fix.antenna.latitude / kDegree;
+  fields.longitude_degrees = fix.antenna.longitude / kDegree;
+  fields.altitude_meters = fix.antenna.height;
+  fields.orthometric_altitude = fix.antenna.height;
+  fields.corrected_orthometric_altitude = fix.antenna.height;
+  fields.geoidal_distance = 0;
+  fields.fix_quality = nmea_of_quality(fix.quality);
+  fields.satellitesUsed = static_cast<uint32_t>(std::max(fix.details.satellites.value_or(0), 0));
+  fields.thereis_HDOP = fix.details.hdop.has_value();
+  fields.HDOP = static_cast<float>(fix.details.hdop.value_or(0));
+  return message;
+}
+
+FixDetails details_of(const mrpt::obs::CObservationGPS& gps) {
+  FixDetails details;
+  if (const auto* gga = message<gnss::Message_NMEA_GGA>(gps)) {
+    const auto fields = gga->fields;
+    if (fields.satellitesUsed > 0 && fields.satellitesUsed < kMostSatellites) {
+      details.satellites = static_cast<int>(fields.satellitesUsed);
+    }
+    if (fields.thereis_HDOP && fields.HDOP > 0) details.hdop = fields.HDOP;
   }
+  if (const auto* bestpos = message<gnss::Message_NV_OEM6_BESTPOS>(gps)) {
+    const auto fields = bestpos->fields;
+    if (fields.num_sats_sol > 0) details.satellites = fields.num_sats_sol;
+    if (fields.diff_age > 0) details.correction_age = fields.diff_age;
+  }
+  return details;
+}
+
+GroundVelocity ground_velocity(double speed, double course) {
+  return {Eigen::Vector3d(speed * std::cos(course), speed * std::sin(course), 0),
+          diagonal(kSpeedSigma, kSpeedSigma, kOpenVerticalSigma)};
 }
 
 // Receivers of newer MRPT -----------------------------------------------------------------------
@@ -289,19 +345,44 @@ template <class Gps>
 struct HasCovarianceEnu<Gps, std::void_t<decltype(std::declval<Gps>().covariance_enu)>>
     : std::true_type {};
 
-/// MRPT from 2.11.12 on keeps a covariance East-North-Up beside the messages.
+/// East-North-Up to North-East-Down, and back.
+Eigen::Matrix3d ned_of_enu(const Eigen::Matrix3d& covariance) {
+  const Eigen::Matrix3d turn = (Eigen::Matrix3d() << 0, 1, 0, 1, 0, 0, 0, 0, -1).finished();
+  return turn * covariance * turn.transpose();
+}
+
+/// The covariance that MRPT keeps beside the messages from 2.11.12 on.
 template <class Gps>
-void add_covariance_enu(const Gps& gps, GnssFix& fix) {
+std::optional<Eigen::Matrix3d> covariance_enu(const Gps& gps) {
+  if (const auto* record = dynamic_cast<const GpsRecord*>(&gps)) {
+    return record->position_covariance_w;
+  }
   if constexpr (HasCovarianceEnu<Gps>::value) {
-    if (!gps.covariance_enu) return;
-    constexpr int kEnuOfNed[] = {1, 0, 2};
-    constexpr double kSign[] = {1, 1, -1};
-    for (int row = 0; row < 3; ++row) {
-      for (int column = 0; column < 3; ++column) {
-        fix.position_covariance(row, column) =
-            kSign[row] * kSign[column] * (*gps.covariance_enu)(kEnuOfNed[row], kEnuOfNed[column]);
-      }
-    }
+    if (gps.covariance_enu) return Eigen::Matrix3d(gps.covariance_enu->asEigen());
+  }
+  return std::nullopt;
+}
+
+/// The quality by the fix type of version 13; none if there is no position of GNSS.
+std::optional<FixQuality> quality_of_record(const GpsRecord& record, FixQuality otherwise) {
+  switch (record.kind_of_fix) {
+    case GpsRecord::kNoFix:
+    case GpsRecord::kDeadReckoning:
+      return std::nullopt;
+    case GpsRecord::kAutonomous:
+      return FixQuality::single;
+    case GpsRecord::kSbas:
+    case GpsRecord::kGbas:
+    case GpsRecord::kDgps:
+      return FixQuality::differential;
+    case GpsRecord::kRtkFloat:
+      return FixQuality::float_rtk;
+    case GpsRecord::kRtkFixed:
+      return FixQuality::fixed_rtk;
+    case GpsRecord::kPpp:
+      return FixQuality::ppp;
+    default:
+      return otherwise;
   }
 }
 
@@ -339,18 +420,60 @@ NmeaSigma nmea_sigma(FixQuality quality, std::optional<double> hdop) {
   return {horizontal * dilution, 2 * horizontal * dilution};
 }
 
+std::optional<GroundVelocity> decode_velocity(const mrpt::obs::CObservationGPS& gps) {
+  const auto* rmc = message<gnss::Message_NMEA_RMC>(gps);
+  const auto* vtg = message<gnss::Message_NMEA_VTG>(gps);
+  if (rmc != nullptr && rmc->fields.validity_char == 'A') {
+    return ground_velocity(rmc->fields.speed_knots * kKnot,
+                           rmc->fields.direction_degrees * kDegree);
+  }
+  if (rmc == nullptr && vtg != nullptr) {
+    return ground_velocity(vtg->fields.ground_speed_knots * kKnot,
+                           vtg->fields.true_track * kDegree);
+  }
+  return std::nullopt;
+}
+
 std::optional<GnssFix> decode_fix(const mrpt::obs::CObservationGPS& gps, int64_t t_ns) {
   std::optional<GnssFix> fix = position_of(gps);
   if (!fix) return std::nullopt;
   fix->t_ns = t_ns;
-  add_covariance_enu(gps, *fix);
+  if (const auto* record = dynamic_cast<const GpsRecord*>(&gps)) {
+    const std::optional<FixQuality> quality = quality_of_record(*record, fix->quality);
+    if (!quality) return std::nullopt;
+    fix->quality = *quality;
+  }
+  const std::optional<Eigen::Matrix3d> covariance = covariance_enu(gps);
+  const bool told = covariance && (covariance->diagonal().array() > 0).all();  // zero: unknown
+  if (told) fix->position_covariance = ned_of_enu(*covariance);
+  fix->details = details_of(gps);
   const auto* pzs = message<gnss::Message_TOPCON_PZS>(gps);
   if (pzs != nullptr) add_pzs_position_covariance(*pzs, *fix);
   if (pzs != nullptr && pzs->hasCartesianPosVel) {
     add_pzs_velocity(*pzs, *fix);
   } else {
-    add_nmea_velocity(gps, *fix);
+    if (const std::optional<GroundVelocity> velocity = decode_velocity(gps)) {
+      fix->velocity_n = velocity->velocity_n;
+      fix->velocity_covariance = velocity->covariance;
+    }
   }
+  return fix;
+}
+
+std::optional<GnssFix> decode_rmc(const mrpt::obs::CObservationGPS& gps, int64_t t_ns) {
+  constexpr double kNoHeightSigma = 1000;
+  const auto* rmc = message<gnss::Message_NMEA_RMC>(gps);
+  if (rmc == nullptr || rmc->fields.validity_char != 'A') return std::nullopt;
+  const auto fields = rmc->fields;
+  const NmeaSigma sigma = nmea_sigma(FixQuality::unknown, std::nullopt);
+  const GroundVelocity velocity =
+      ground_velocity(fields.speed_knots * kKnot, fields.direction_degrees * kDegree);
+  GnssFix fix;
+  fix.t_ns = t_ns;
+  fix.antenna = geodetic(fields.latitude_degrees, fields.longitude_degrees, 0);
+  fix.position_covariance = diagonal(sigma.horizontal, sigma.horizontal, kNoHeightSigma);
+  fix.velocity_n = velocity.velocity_n;
+  fix.velocity_covariance = velocity.covariance;
   return fix;
 }
 
@@ -358,6 +481,7 @@ void encode_fix(const GnssFix& fix, mrpt::obs::CObservationGPS& gps) {
   gps.messages.clear();
   gps.has_satellite_timestamp = true;
   gps.setMsg(bestpos_of(fix));
+  gps.setMsg(gga_of(fix));
   if (fix.velocity_n || !is_diagonal(fix.position_covariance)) gps.setMsg(pzs_of(fix));
 }
 

@@ -244,6 +244,7 @@ ImportSummary import_i2nav(const I2navImport& options) {
   inputs.gnss = std::make_unique<I2navGnss>(options.gnss, clock, options.quality);
   if (options.reference) inputs.reference = std::make_unique<I2navReference>(*options.reference);
   inputs.lever_arm_v = options.lever_arm;
+  inputs.sensor.samples = "interval_mean";  // increments
   return rawlog::run_import(options, std::move(inputs));
 }
 

@@ -100,6 +100,8 @@ void ImuMapping::fields(ConfigFields& f) {
   f.texts("axes", axes, "sensor axes that look forward, right, down, e.g. [-x, y, -z]");
   f.vector3("mounting_rpy_deg", mounting_rpy_deg,
             "roll, pitch, heading of the sensor, on those axes, in the vehicle [deg]");
+  f.section("sensor", sensor,
+            "what runs shall know of the IMU, as in section imu of their configuration");
 }
 
 state::Mounting ImuMapping::mounting() const {
@@ -146,7 +148,16 @@ void ImportMapping::fields(ConfigFields& f) {
   f.section("imu", imu, "IMU table");
   f.section("gnss", gnss, "GNSS table");
   f.section("reference", reference, "reference trajectory, if there is one");
-  f.vector3("lever_arm_m", lever_arm_m, "IMU to antenna, forward, right, down [m]");
+  f.numbers("lever_arm_m", lever_arm_m, kAnyNumber,
+            "IMU to antenna, forward, right, down; empty: not known, zero is written [m]");
+}
+
+std::optional<Eigen::Vector3d> ImportMapping::lever_arm() const {
+  if (lever_arm_m.empty()) return std::nullopt;
+  if (lever_arm_m.size() != 3) {
+    throw UsageError("lever_arm_m: give three numbers, [forward, right, down], or none");
+  }
+  return Eigen::Vector3d(lever_arm_m.data());
 }
 
 }  // namespace foucault::rawlog

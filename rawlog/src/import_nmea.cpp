@@ -208,7 +208,8 @@ ImportSummary import_nmea(const NmeaImport& options) {
   });
   inputs.gnss = std::make_unique<NmeaReader>(mapping.gnss, *gnss);
   inputs.mapping = options.mapping;
-  inputs.lever_arm_v = options.lever_arm.value_or(mapping.lever_arm_m);
+  inputs.lever_arm_v = options.lever_arm ? options.lever_arm : mapping.lever_arm();
+  inputs.sensor = mapping.imu.sensor;
   return run_import(options, std::move(inputs));
 }
 

@@ -438,7 +438,8 @@ ImportSummary import_rtklib(const RtklibImport& options) {
     inputs.mounting = mapping.imu.mounting();
   });
   inputs.mapping = options.mapping;
-  inputs.lever_arm_v = options.lever_arm.value_or(mapping.lever_arm_m);
+  inputs.lever_arm_v = options.lever_arm ? options.lever_arm : mapping.lever_arm();
+  inputs.sensor = mapping.imu.sensor;
   return rawlog::run_import(options, std::move(inputs));
 }
 

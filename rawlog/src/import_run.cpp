@@ -111,10 +111,15 @@ class Input {
 /// Finishing touches and statistics on the way to the writer.
 class Output {
  public:
-  Output(const std::string& path, const state::Mounting& mounting,
-         const Eigen::Vector3d& lever_arm_v)
-      : writer_(path, mounting), p_b_a_(mounting.q_v_b.conjugate() * lever_arm_v) {
-    summary_.lever_arm_v = lever_arm_v;
+  Output(const std::string& path, const ImportInputs& inputs)
+      : writer_(path, inputs.mounting),
+        p_b_a_(inputs.mounting.q_v_b.conjugate() *
+               inputs.lever_arm_v.value_or(Eigen::Vector3d::Zero())) {
+    summary_.lever_arm_v = inputs.lever_arm_v;
+    RecordingNotes notes;
+    notes.lever_arm = inputs.lever_arm_v ? "given" : "unknown";
+    notes.imu = inputs.sensor;
+    writer_.write(notes);
   }
 
   void write(Record record) {
@@ -246,7 +251,7 @@ ImportSummary run_import(const ImportOptions& options, ImportInputs inputs) {
   std::optional<Input> reference;
   if (inputs.reference) reference.emplace(std::move(inputs.reference), options.skip_bad_rows);
 
-  Output output(options.out, inputs.mounting, inputs.lever_arm_v);
+  Output output(options.out, inputs);
   int64_t records = 0;
   while (Input* input = earliest(imu, gnss, reference)) {
     output.write(input->take());

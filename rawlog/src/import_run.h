@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "foucault/core/time.h"
+#include "foucault/imu/imu_noise.h"
 #include "foucault/rawlog/import.h"
 #include "foucault/rawlog/rawlog_writer.h"
 #include "foucault/state/interfaces.h"
@@ -83,7 +84,8 @@ struct ImportInputs {
   std::unique_ptr<RecordReader> reference;  ///< may be null
   std::string mapping;                      ///< its file, if there is one
   state::Mounting mounting;
-  Eigen::Vector3d lever_arm_v = Eigen::Vector3d::Zero();  ///< IMU to antenna [m]
+  std::optional<Eigen::Vector3d> lever_arm_v;  ///< IMU to antenna [m]; none: not known
+  imu::ImuOptions sensor;  ///< what is known of the IMU, for the notes of the log
 };
 
 /// Merges the inputs by stamp into options.out. Throws UsageError if that is one of the inputs.

@@ -534,6 +534,7 @@ ImportSummary import_ulog(const UlogImport& options) {
   inputs.imu = std::make_unique<UlogImu>(options.log, survey.imu(), survey.clock());
   inputs.gnss = std::make_unique<UlogGnss>(options.log, survey.gnss(), survey.clock());
   inputs.lever_arm_v = *arm;
+  inputs.sensor.samples = "interval_mean";  // PX4 integrates
   return run_import(options, std::move(inputs));
 }
 

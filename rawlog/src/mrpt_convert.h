@@ -42,6 +42,16 @@ void encode_imu(const imu::ImuSample& sample, mrpt::obs::CObservationIMU& imu);
 /// The position that a GPS record holds, and its velocity if there is one, without lever arm; none
 /// if it holds no position.
 std::optional<GnssFix> decode_fix(const mrpt::obs::CObservationGPS& gps, int64_t t_ns);
+/// The position of an RMC, which has no height: zero, with a sigma of 1 km; with its velocity.
+std::optional<GnssFix> decode_rmc(const mrpt::obs::CObservationGPS& gps, int64_t t_ns);
+
+/// A velocity along the ground, of RMC or VTG; the vertical is left open by its covariance.
+struct GroundVelocity {
+  Eigen::Vector3d velocity_n = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+};
+std::optional<GroundVelocity> decode_velocity(const mrpt::obs::CObservationGPS& gps);
+
 /// Messages of a fix; stamp, label and pose are the caller's.
 void encode_fix(const GnssFix& fix, mrpt::obs::CObservationGPS& gps);
 

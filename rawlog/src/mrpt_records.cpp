@@ -1,5 +1,6 @@
 #include "mrpt_records.h"
 
+#include <mrpt/obs/CObservationComment.h>
 #include <mrpt/obs/CObservationGPS.h>
 #include <mrpt/obs/CObservationIMU.h>
 #include <mrpt/obs/CObservationOdometry.h>
@@ -25,7 +26,6 @@ constexpr size_t kLongestLabel = 1024;
 constexpr size_t kMostImuFields = 256;
 constexpr size_t kMostMessages = 64;
 constexpr size_t kLongestMessage = size_t{1} << 14;
-constexpr int kMatrixSide = 4;
 
 /// False also for a header that the bytes cut off.
 bool begins_rawlog_object(Bytes bytes) {
@@ -140,32 +140,54 @@ class ImuValues {
   size_t value_size_;
 };
 
-std::optional<imu::ImuSample> sample_of(const ImuValues& values, bool swapped_rates) {
-  using namespace mrpt::obs;
-  constexpr std::array<size_t, 6> kNeeded{IMU_X_ACC, IMU_Y_ACC, IMU_Z_ACC, IMU_WX, IMU_WY, IMU_WZ};
-  for (const size_t index : kNeeded) {
+std::optional<Eigen::Vector3d> vector_of(const ImuValues& values,
+                                         const std::array<size_t, 3>& indices) {
+  for (const size_t index : indices) {
     if (!values.has(index)) return std::nullopt;
   }
-  imu::ImuSample sample;
-  sample.gyro_b = {values.get(swapped_rates ? IMU_WZ : IMU_WX), values.get(IMU_WY),
-                   values.get(swapped_rates ? IMU_WX : IMU_WZ)};
-  sample.accel_b = {values.get(IMU_X_ACC), values.get(IMU_Y_ACC), values.get(IMU_Z_ACC)};
-  return sample;
+  return Eigen::Vector3d(values.get(indices[0]), values.get(indices[1]), values.get(indices[2]));
+}
+
+/// Until version 1 grabbers stored roll and yaw rate the wrong way round.
+void take_values(const ImuValues& values, bool swapped_rates, ImuRecord& record) {
+  using namespace mrpt::obs;
+  record.gyro_b = vector_of(values, {swapped_rates ? size_t{IMU_WZ} : size_t{IMU_WX}, IMU_WY,
+                                     swapped_rates ? size_t{IMU_WX} : size_t{IMU_WZ}});
+  record.accel_b = vector_of(values, {IMU_X_ACC, IMU_Y_ACC, IMU_Z_ACC});
+  if (!record.gyro_b || !record.accel_b) return;
+  record.sample = imu::ImuSample{record.t_ns.value_or(0), *record.gyro_b, *record.accel_b};
+  record.gyro_b.reset();
+  record.accel_b.reset();
 }
 
 // GNSS ------------------------------------------------------------------------------------------
 
-mrpt::math::CMatrixFloat44 read_covariance(RecordCursor& cursor) {
-  require_version(nested(cursor, "mrpt::math::CMatrixF"), 0, 0);
-  if (cursor.get<uint32_t>() != kMatrixSide || cursor.get<uint32_t>() != kMatrixSide) {
-    throw BadRecord("a covariance that is not 4 x 4");
+/// A CMatrixF of floats or a CMatrixD of doubles.
+template <class Value, int kSide>
+Eigen::Matrix<Value, kSide, kSide> read_matrix(RecordCursor& cursor, std::string_view name) {
+  require_version(nested(cursor, name), 0, 0);
+  if (cursor.get<uint32_t>() != kSide || cursor.get<uint32_t>() != kSide) {
+    throw BadRecord("a covariance of another size");
   }
-  mrpt::math::CMatrixFloat44 matrix;
-  for (int row = 0; row < kMatrixSide; ++row) {
-    for (int column = 0; column < kMatrixSide; ++column) matrix(row, column) = cursor.get<float>();
+  Eigen::Matrix<Value, kSide, kSide> matrix;
+  for (int row = 0; row < kSide; ++row) {
+    for (int column = 0; column < kSide; ++column) matrix(row, column) = cursor.get<Value>();
   }
   end_of_object(cursor);
   return matrix;
+}
+
+mrpt::math::CMatrixFloat44 read_covariance(RecordCursor& cursor) {
+  return mrpt::math::CMatrixFloat44(read_matrix<float, 4>(cursor, "mrpt::math::CMatrixF"));
+}
+
+/// A std::optional: these words, the name of its type, whether it is there.
+std::optional<Eigen::Matrix3d> read_optional_covariance(RecordCursor& cursor) {
+  constexpr size_t kLongestWord = 80;
+  if (cursor.text(kLongestWord) != "std::optional") throw BadRecord("no std::optional inside it");
+  cursor.text(kLongestWord);
+  if (!cursor.flag()) return std::nullopt;
+  return read_matrix<double, 3>(cursor, "mrpt::math::CMatrixD");
 }
 
 void read_pzs_position(RecordCursor& cursor, gnss::Message_TOPCON_PZS& pzs) {
@@ -270,13 +292,18 @@ void read_message(RecordCursor& cursor, mrpt::obs::CObservationGPS& gps) {
   }
 }
 
-void read_messages(RecordCursor& cursor, int version, mrpt::obs::CObservationGPS& gps) {
+void read_messages(RecordCursor& cursor, int version, GpsRecord& gps) {
   gps.timestamp = read_stamp(cursor);
   gps.originalReceivedTimestamp = read_stamp(cursor);
   gps.sensorLabel = cursor.text(kLongestLabel);
   gps.sensorPose = read_pose(cursor);
   gps.has_satellite_timestamp =
       version >= 11 ? cursor.flag() : gps.timestamp != gps.originalReceivedTimestamp;
+  if (version >= 12) gps.position_covariance_w = read_optional_covariance(cursor);
+  if (version >= 13) {
+    gps.kind_of_fix = cursor.get<uint8_t>();
+    cursor.skip(sizeof(uint16_t));  // satellite systems
+  }
   const size_t messages = cursor.count(kMostMessages);
   for (size_t i = 0; i < messages; ++i) read_message(cursor, gps);
 }
@@ -393,18 +420,16 @@ ImuRecord read_imu(RecordCursor& cursor, int version) {
   const unsigned char* const values = cursor.take(count * value_size);
   record.label = cursor.text(kLongestLabel);
   end_of_object(cursor);
-  // Until version 1 grabbers stored roll and yaw rate the wrong way round.
-  record.sample = sample_of(ImuValues(present, values, count, value_size), version < 2);
-  if (record.sample) record.sample->t_ns = record.t_ns.value_or(0);
+  take_values(ImuValues(present, values, count, value_size), version < 2, record);
   return record;
 }
 
 mrpt::obs::CObservation::Ptr read_gps(RecordCursor& cursor, int version) {
   constexpr int kFirstWithStamp = 3;
   constexpr int kFirstWithMessages = 10;
-  constexpr int kNewest = 11;
+  constexpr int kNewest = 13;
   require_version(version, kFirstWithStamp, kNewest);
-  auto gps = std::make_shared<mrpt::obs::CObservationGPS>();
+  auto gps = std::make_shared<GpsRecord>();
   if (version >= kFirstWithMessages) {
     read_messages(cursor, version, *gps);
   } else {
@@ -454,6 +479,17 @@ mrpt::obs::CObservation::Ptr read_robot_pose(RecordCursor& cursor, int version) 
   if (version >= 1) pose->sensorPose = read_pose(cursor);
   end_of_object(cursor);
   return pose;
+}
+
+mrpt::obs::CObservation::Ptr read_comment(RecordCursor& cursor, int version) {
+  constexpr size_t kLongestComment = size_t{1} << 20;
+  require_version(version, 0, 1);
+  auto comment = std::make_shared<mrpt::obs::CObservationComment>();
+  comment->text = cursor.text(kLongestComment);
+  comment->timestamp = read_stamp(cursor);
+  if (version >= 1) comment->sensorLabel = cursor.text(kLongestLabel);
+  end_of_object(cursor);
+  return comment;
 }
 
 mrpt::poses::CPose3D pose_of(const ImuRecord& record) { return pose_of(RecordCursor(record.pose)); }

@@ -1,8 +1,9 @@
 #pragma once
 
-#include <mrpt/obs/CObservation.h>
+#include <mrpt/obs/CObservationGPS.h>
 #include <mrpt/poses/CPose3D.h>
 
+#include <Eigen/Core>
 #include <cstdint>
 #include <optional>
 #include <string_view>
@@ -51,19 +52,42 @@ const unsigned char* find_end_of_object(const unsigned char* from, Bytes bytes);
 struct ImuRecord {
   std::optional<int64_t> t_ns;
   std::string_view label;
-  std::optional<imu::ImuSample> sample;  ///< none without gyroscope or accelerometer
-  Bytes pose;                            ///< the object sensorPose
+  std::optional<imu::ImuSample> sample;            ///< none without gyroscope or accelerometer
+  std::optional<Eigen::Vector3d> gyro_b, accel_b;  ///< one of them, where the other is missing
+  Bytes pose;                                      ///< the object sensorPose
 };
 
 /// sensorPose of the record.
 mrpt::poses::CPose3D pose_of(const ImuRecord& record);
 
+/// With what CObservationGPS has since MRPT 2.11.12 (version 12) and 2.15 (version 13).
+struct GpsRecord : mrpt::obs::CObservationGPS {
+  /// MRPT's GnssFixType, which are numbers here since MRPT 2.5.8 has no names for them.
+  enum FixType : uint8_t {
+    kUnknown = 0,
+    kNoFix = 1,
+    kAutonomous = 2,
+    kSbas = 3,
+    kGbas = 4,
+    kDgps = 5,
+    kRtkFloat = 6,
+    kRtkFixed = 7,
+    kPpp = 8,
+    kDeadReckoning = 9,
+    kSimulation = 10
+  };
+
+  std::optional<Eigen::Matrix3d> position_covariance_w;  ///< east, north, up [m^2]
+  uint8_t kind_of_fix = kUnknown;                        ///< a FixType, or one that came later
+};
+
 /// These read the fields of an object in one of the versions that its class has had, up to its end.
 /// They throw RecordTooShort, BadRecord and UnknownVersion.
 ImuRecord read_imu(RecordCursor& cursor, int version);  ///< 0 to 4
-/// Versions 3 (before, there was no stamp) to 11. Of the messages those that we use: GGA, RMC, VTG,
-/// BESTPOS, INSPVAS, PZS.
+/// A GpsRecord of versions 3 (before, there was no stamp) to 13. Of the messages those that we use:
+/// GGA, RMC, VTG, BESTPOS, INSPVAS, PZS.
 mrpt::obs::CObservation::Ptr read_gps(RecordCursor& cursor, int version);
+mrpt::obs::CObservation::Ptr read_comment(RecordCursor& cursor, int version);     ///< 0 and 1
 mrpt::obs::CObservation::Ptr read_odometry(RecordCursor& cursor, int version);    ///< 0 to 2
 mrpt::obs::CObservation::Ptr read_robot_pose(RecordCursor& cursor, int version);  ///< 0 and 1
 

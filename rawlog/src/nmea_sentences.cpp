@@ -14,7 +14,6 @@ namespace foucault::rawlog {
 
 namespace {
 
-constexpr int64_t kNanosecondsPerDay = kSecondsPerDay * kNanosecondsPerSecond;
 constexpr double kKnot = 1852.0 / kSecondsPerHour;  ///< [m/s]
 
 constexpr size_t kAddress = 5;  ///< two letters of the talker (GP, GN, GL ...), three of the type

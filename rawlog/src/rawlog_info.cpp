@@ -7,6 +7,7 @@
 #include "foucault/core/hole.h"
 #include "foucault/imu/burst_stamps.h"
 #include "mrpt_convert.h"
+#include "notes_comment.h"
 #include "rawlog_stream.h"
 
 namespace foucault::rawlog {
@@ -115,7 +116,7 @@ class StreamStatistics {
  private:
   void look_for_bursts(int64_t t_ns) {
     constexpr size_t kLookedAt = 400;
-    if (info_.type != "CObservationIMU") return;
+    if (info_.type.rfind("CObservationIMU", 0) != 0) return;
     recent_.push_back(t_ns);
     if (recent_.size() < kLookedAt) return;
     if (const std::optional<imu::BurstPattern> pattern = imu::burst_pattern(recent_))
@@ -159,6 +160,7 @@ class Collector {
       ++info_.other_records[std::string(logged.type)];
       return;
     }
+    if (notes_comment(logged) != nullptr) return;
     statistics(logged).add(logged.t_ns);
     if (logged.imu) return add_imu(*logged.imu);
     const auto* gps = dynamic_cast<const mrpt::obs::CObservationGPS*>(logged.observation.get());
@@ -166,6 +168,11 @@ class Collector {
   }
 
   void finish() {
+    if (!imu_pose_ && gyro_pose_ && has_accel_) {
+      imu_pose_ = gyro_pose_;
+      info_.imu_label = gyro_label_;
+      info_.mounting = state::Mounting{imu_pose_->q_v_s};
+    }
     for (const auto& [key, statistics] : streams_) info_.streams.push_back(statistics.result());
     for (auto& [label, receiver] : receivers_) {
       if (imu_pose_ && receiver.antenna) set_lever_arm(*receiver.antenna, receiver.info);
@@ -182,11 +189,22 @@ class Collector {
 
   StreamStatistics& statistics(const LoggedObservation& logged) {
     const std::string label(logged.label());
-    const std::string type(logged.type);
+    const std::string type = std::string(logged.type) + half_of(logged.imu);
     return streams_.try_emplace({label, type}, label, type).first->second;
   }
 
+  /// Gyroscopes and accelerometers in records of their own are streams of their own.
+  static const char* half_of(const std::optional<rawlog::ImuRecord>& imu) {
+    if (imu && imu->gyro_b) return " (rates)";
+    return imu && imu->accel_b ? " (forces)" : "";
+  }
+
   void add_imu(const rawlog::ImuRecord& imu) {
+    has_accel_ = has_accel_ || imu.accel_b;
+    if (imu.gyro_b && !gyro_pose_) {
+      gyro_pose_ = rawlog::from_mrpt(rawlog::pose_of(imu));
+      gyro_label_ = imu.label;
+    }
     if (!imu.sample) return;
     if (!imu_pose_) {
       imu_pose_ = rawlog::from_mrpt(rawlog::pose_of(imu));
@@ -238,6 +256,9 @@ class Collector {
   std::map<std::pair<std::string, std::string>, StreamStatistics> streams_;
   std::map<std::string, Receiver> receivers_;
   std::optional<rawlog::SensorPose> imu_pose_;
+  std::optional<rawlog::SensorPose> gyro_pose_;  ///< of a gyroscope without forces in its records
+  std::string gyro_label_;
+  bool has_accel_ = false;
 };
 
 }  // namespace

@@ -17,7 +17,10 @@
 #include "foucault/imu/burst_stamps.h"
 #include "foucault/imu/increments.h"
 #include "foucault/imu/recent_rates.h"
+#include "foucault/rawlog/recording_notes.h"
+#include "imu_halves.h"
 #include "mrpt_convert.h"
+#include "notes_comment.h"
 #include "rawlog_stream.h"
 
 namespace foucault::rawlog {
@@ -44,10 +47,13 @@ constexpr std::string_view kNotFinite = "not finite";
 /// What must be known of a log before its first measurement.
 struct Overview {
   std::string imu_label;
+  bool imu_halves = false;  ///< gyroscope and accelerometer in records of their own
+  std::string accel_label;  ///< of such an accelerometer
   rawlog::SensorPose imu;
   std::string gnss_label;
   rawlog::SensorPose antenna;
   Geodetic first_fix;
+  bool by_rmc = false;  ///< no other positions: those of RMC, without heights
 };
 
 const mrpt::obs::CObservationGPS* as_gps(const LoggedObservation& logged) {
@@ -56,6 +62,11 @@ const mrpt::obs::CObservationGPS* as_gps(const LoggedObservation& logged) {
 
 bool label_fits(const std::string& wanted, std::string_view label) {
   return wanted.empty() || wanted == label;
+}
+
+/// MRPT's grabbers append the kind of sentence to the label: GPS_NMEA_GGA, GPS_NMEA_RMC.
+std::string_view receiver_of(std::string_view label) {
+  return label.substr(0, label.rfind("_NMEA_"));
 }
 
 /// A velocity that is no number does not spoil a position.
@@ -77,7 +88,11 @@ class OverviewScan {
     rawlog::RawlogStream stream(path_);
     while (!(imu_found_ && gnss_found_)) {
       const std::optional<LoggedObservation> logged = stream.next();
-      if (!logged) throw DataError(stream.damage() ? *stream.damage() : missing());
+      if (!logged) {
+        imu_found_ = imu_found_ || (gyro_found_ && accel_found_);
+        if (imu_found_ && (gnss_found_ || overview_.by_rmc)) break;
+        throw DataError(stream.damage() ? *stream.damage() : missing());
+      }
       look_at(*logged);
     }
     return overview_;
@@ -88,7 +103,7 @@ class OverviewScan {
     if (!logged.t_ns) return;
     if (logged.imu) {
       ++imus_;
-      if (!imu_found_ && label_fits(options_.imu_label, logged.label())) take_imu(*logged.imu);
+      if (!imu_found_ && label_fits(options_.imu_label, logged.label())) look_at(*logged.imu);
     } else if (const auto* gps = as_gps(logged)) {
       if (gps->sensorLabel == options_.reference_label) return;
       ++gps_;
@@ -96,20 +111,31 @@ class OverviewScan {
     }
   }
 
-  void take_imu(const rawlog::ImuRecord& imu) {
-    if (!imu.sample) return;
-    overview_.imu_label = imu.label;
-    overview_.imu = rawlog::from_mrpt(rawlog::pose_of(imu));
-    imu_found_ = true;
+  /// Records with both are preferred to halves, where they come soon.
+  void look_at(const rawlog::ImuRecord& imu) {
+    constexpr int kSoon = 200;
+    if (imu.sample || (imu.gyro_b && !gyro_found_)) {
+      overview_.imu_label = imu.label;
+      overview_.imu = rawlog::from_mrpt(rawlog::pose_of(imu));
+    }
+    if (imu.accel_b && !accel_found_) overview_.accel_label = imu.label;
+    gyro_found_ = gyro_found_ || imu.gyro_b;
+    accel_found_ = accel_found_ || imu.accel_b;
+    overview_.imu_halves = !imu.sample;
+    imu_found_ = imu.sample || (gyro_found_ && accel_found_ && ++halves_ > kSoon);
   }
 
   void take_fix(const mrpt::obs::CObservationGPS& gps) {
-    const std::optional<GnssFix> fix = rawlog::decode_fix(gps, 0);
+    std::optional<GnssFix> fix = rawlog::decode_fix(gps, 0);
+    const bool found = fix && is_position(fix->antenna);
+    if (!found && overview_.by_rmc) return;
+    if (!found) fix = rawlog::decode_rmc(gps, 0);
     if (!fix || !is_position(fix->antenna)) return;
+    gnss_found_ = found;
+    overview_.by_rmc = !found;
     overview_.gnss_label = gps.sensorLabel;
     overview_.antenna = rawlog::from_mrpt(gps.sensorPose);
     overview_.first_fix = fix->antenna;
-    gnss_found_ = true;
   }
 
   std::string missing() const {
@@ -133,6 +159,8 @@ class OverviewScan {
   RawlogOptions options_;
   Overview overview_;
   bool imu_found_ = false;
+  bool gyro_found_ = false, accel_found_ = false;  // alone
+  int halves_ = 0;
   bool gnss_found_ = false;
   int64_t imus_ = 0;
   int64_t gps_ = 0;
@@ -166,6 +194,7 @@ class RawlogSource::Impl {
         options_(options),
         reorder_ns_(nanoseconds(options.reorder_s)),
         overview_(OverviewScan(path, options).run()),
+        lever_arm_told_(read_notes(path).lever_arm),
         mounting_{overview_.imu.q_v_s},
         lever_arm_(lever_arm_to(overview_.antenna)),
         stream_(path),
@@ -198,11 +227,13 @@ class RawlogSource::Impl {
   void read_one();
   void dispatch(const LoggedObservation& logged, int64_t t_ns);
   void take_imu(const rawlog::ImuRecord& imu, int64_t record, int64_t t_ns);
+  void take_half(const rawlog::ImuRecord& imu, int64_t record, int64_t t_ns);
   void take_sample(const imu::ImuSample& sample, int64_t record);
   void put_in_order(const imu::ImuSample& sample, int64_t record);
   void convert_until(int64_t t_ns);
   void convert(const imu::ImuSample& sample, int64_t stamp_ns);
   void take_gps(const mrpt::obs::CObservationGPS& gps, int64_t t_ns);
+  void take_velocity(const mrpt::obs::CObservationGPS& gps, int64_t t_ns);
   void take_reference(const ReferencePose& pose, const mrpt::poses::CPose3D& sensor_pose,
                       std::string_view type);
   void take_odometry(const mrpt::obs::CObservationOdometry& odometry, int64_t t_ns);
@@ -220,12 +251,15 @@ class RawlogSource::Impl {
   RawlogOptions options_;
   int64_t reorder_ns_;
   Overview overview_;
+  std::string lever_arm_told_;  ///< as RecordingNotes
   state::Mounting mounting_;
   Eigen::Vector3d lever_arm_;
   rawlog::RawlogStream stream_;
   imu::Incrementer incrementer_;
   SourceCounts counts_;
 
+  ImuHalves halves_;
+  int64_t newest_accel_ns_ = std::numeric_limits<int64_t>::min();
   std::optional<imu::ImuSample> ahead_;  ///< far after the one before it; the next one tells
   std::deque<imu::ImuSample> samples_;   ///< by stamp; others may still come between them
   imu::BurstStamps even_stamps_;
@@ -234,8 +268,9 @@ class RawlogSource::Impl {
   int backward_in_a_row_ = 0;
   std::deque<ImuIncrement> increments_;
   std::multimap<int64_t, Measurement> others_;
-  Eigen::Vector3d reference_arm_v_ = Eigen::Vector3d::Zero();  ///< reference to IMU
-  imu::RecentRates rates_{imu::kLeverArmRateMemory};           ///< of what was released
+  std::map<int64_t, rawlog::GroundVelocity> waiting_velocities_;  ///< their fixes are still to come
+  Eigen::Vector3d reference_arm_v_ = Eigen::Vector3d::Zero();     ///< reference to IMU
+  imu::RecentRates rates_{imu::kLeverArmRateMemory};              ///< of what was released
   int64_t newest_imu_ns_ = std::numeric_limits<int64_t>::min();
   int64_t released_ns_ = std::numeric_limits<int64_t>::min();
   int64_t released_increment_ns_ = std::numeric_limits<int64_t>::min();
@@ -307,16 +342,31 @@ void RawlogSource::Impl::dispatch(const LoggedObservation& logged, int64_t t_ns)
     return take_reference(rawlog::decode_reference(*pose, overview_.first_fix, t_ns),
                           pose->sensorPose, logged.type);
   }
-  skip(logged.type);
+  if (notes_comment(logged) == nullptr) skip(logged.type);
 }
 
 void RawlogSource::Impl::take_imu(const rawlog::ImuRecord& imu, int64_t record, int64_t t_ns) {
+  if (overview_.imu_halves) return take_half(imu, record, t_ns);
   if (imu.label != overview_.imu_label) return skip(kImu, "another label");
   if (!imu.sample) return skip(kImu, "no gyroscope or no accelerometer");
   imu::ImuSample sample = *imu.sample;
   sample.t_ns = t_ns;
   if (!finite(sample)) return skip_noted(kImu, kNotFinite, t_ns);
   take_sample(sample, record);
+}
+
+void RawlogSource::Impl::take_half(const rawlog::ImuRecord& imu, int64_t record, int64_t t_ns) {
+  const std::optional<Eigen::Vector3d>& half = imu.gyro_b ? imu.gyro_b : imu.accel_b;
+  const std::string& label = imu.gyro_b ? overview_.imu_label : overview_.accel_label;
+  if (!half || imu.label != label) return skip(kImu, "another label");
+  if (!half->allFinite()) return skip_noted(kImu, kNotFinite, t_ns);
+  if (imu.gyro_b) {
+    halves_.add_gyro(t_ns, *half);
+  } else {
+    halves_.add_accel(t_ns, *half);
+    newest_accel_ns_ = std::max(newest_accel_ns_, t_ns);
+  }
+  for (const imu::ImuSample& sample : halves_.take(newest_accel_ns_)) take_sample(sample, record);
 }
 
 /// A stamp far ahead is a hole if the next goes on from there, else a slip of the clock.
@@ -392,10 +442,21 @@ void RawlogSource::Impl::take_gps(const mrpt::obs::CObservationGPS& gps, int64_t
     if (!pose) return skip(kGps, "reference without INSPVAS");
     return take_reference(*pose, gps.sensorPose, kGps);
   }
-  if (gps.sensorLabel != overview_.gnss_label) return skip(kGps, "another label");
-  std::optional<GnssFix> fix = rawlog::decode_fix(gps, t_ns);
-  if (!fix) return skip(kGps, "no position");
+  if (receiver_of(gps.sensorLabel) != receiver_of(overview_.gnss_label)) {
+    return skip(kGps, "another label");
+  }
+  std::optional<GnssFix> fix =
+      overview_.by_rmc ? rawlog::decode_rmc(gps, t_ns) : rawlog::decode_fix(gps, t_ns);
+  if (!fix) return take_velocity(gps, t_ns);
+  const auto waiting = waiting_velocities_.find(t_ns);
+  if (!fix->velocity_n && waiting != waiting_velocities_.end()) {
+    fix->velocity_n = waiting->second.velocity_n;
+    fix->velocity_covariance = waiting->second.covariance;
+    waiting_velocities_.erase(waiting);
+  }
   fix->p_b_a = lever_arm_to(rawlog::from_mrpt(gps.sensorPose));
+  fix->lever_arm_known =
+      lever_arm_told_ == "given" || (lever_arm_told_ == "not_told" && !fix->p_b_a.isZero());
   if (!is_finite(fix->antenna) || !fix->position_covariance.allFinite() ||
       !fix->p_b_a.allFinite()) {
     return skip_noted(kGps, kNotFinite, t_ns);
@@ -409,6 +470,22 @@ void RawlogSource::Impl::take_gps(const mrpt::obs::CObservationGPS& gps, int64_t
   }
   fix_span_.add(t_ns);
   if (add(*fix)) ++counts_.fixes;
+}
+
+/// Of a sentence that was logged apart from its position.
+void RawlogSource::Impl::take_velocity(const mrpt::obs::CObservationGPS& gps, int64_t t_ns) {
+  const std::optional<rawlog::GroundVelocity> velocity = rawlog::decode_velocity(gps);
+  if (!velocity) return skip(kGps, "no position");
+  for (auto it = others_.lower_bound(t_ns); it != others_.end() && it->first == t_ns; ++it) {
+    auto* fix = std::get_if<GnssFix>(&it->second);
+    if (fix == nullptr || fix->velocity_n) continue;
+    fix->velocity_n = velocity->velocity_n;
+    fix->velocity_covariance = velocity->covariance;
+    return;
+  }
+  waiting_velocities_[t_ns] = *velocity;
+  constexpr size_t kMost = 100;
+  if (waiting_velocities_.size() > kMost) waiting_velocities_.erase(waiting_velocities_.begin());
 }
 
 void RawlogSource::Impl::take_reference(const ReferencePose& pose,
@@ -463,6 +540,7 @@ void RawlogSource::Impl::skip_backward(int64_t record, int64_t t_ns) {
 }
 
 void RawlogSource::Impl::end() {
+  if (halves_.alone() > 0) counts_.skipped["CObservationIMU (no force near it)"] = halves_.alone();
   if (ahead_) put_in_order(*ahead_, stream_.records());
   convert_until(std::numeric_limits<int64_t>::max());
   const bool usable = counts_.imu_samples > 0 && counts_.fixes > 0;
@@ -495,6 +573,11 @@ void RawlogSource::Impl::fail(int64_t record, int64_t t_ns, const std::string& w
 
 std::vector<state::Notice> RawlogSource::Impl::notices() const {
   std::vector<state::Notice> notices;
+  if (overview_.by_rmc) {
+    notices.push_back({fix_span_.first_ns, state::NoticeKind::skipped,
+                       "the receiver tells positions by RMC only, without heights: zero is taken, "
+                       "with a sigma of 1 km; log GGA as well"});
+  }
   if (counts_.late > 0) {
     notices.push_back({*first_late_ns_, state::NoticeKind::skipped,
                        fmt::format("{} records came more than {:g} s late and were left out, the "

@@ -80,6 +80,9 @@ std::optional<LoggedObservation> RawlogStream::read_object(const ObjectHeader& h
   if (type == "CObservationRobotPose") {
     return read_observation(cursor, read_robot_pose, header.version);
   }
+  if (type == "CObservationComment" && !in_frame_ && records_ == 0) {  // the notes of our logs
+    return read_observation(cursor, read_comment, header.version);
+  }
   if (type == "CSensoryFrame" && !in_frame_) {
     begin_frame(cursor, header.version);
   } else if (type == kNull && header.version == kEndOfObject) {  // it has no version

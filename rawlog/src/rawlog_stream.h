@@ -18,7 +18,7 @@ namespace foucault::rawlog {
 struct LoggedObservation {
   std::string_view type;  ///< class without name spaces; valid until the next one is read
   std::optional<ImuRecord> imu;
-  mrpt::obs::CObservation::Ptr observation;  ///< GPS, odometry, robot pose
+  mrpt::obs::CObservation::Ptr observation;  ///< GPS, odometry, robot pose, comment
   std::optional<int64_t> t_ns;
   int64_t record = 0;     ///< number of its top-level object, from 1
   bool in_frame = false;  ///< came in a sensory frame

@@ -11,6 +11,7 @@
 #include "foucault/core/time.h"
 #include "gz_archive.h"
 #include "mrpt_convert.h"
+#include "notes_comment.h"
 
 namespace foucault::rawlog {
 
@@ -57,11 +58,17 @@ class RawlogWriter::Impl {
     odometry_.hasVelocities = true;
   }
 
+  void write(RecordingNotes notes) {
+    notes_.emplace();
+    notes_->sensorLabel = "FOUCAULT";
+    notes_->text = kNotesTitle + dump_config(notes);
+  }
+
   void write(const imu::ImuSample& sample) {
     require_stamp(sample.t_ns);
     require(sample.gyro_b.allFinite() && sample.accel_b.allFinite(), "the IMU sample", sample.t_ns);
     rawlog::encode_imu(sample, imu_);
-    archive_.put(imu_);
+    put(imu_);
     imu_begun_ = true;
   }
 
@@ -82,7 +89,7 @@ class RawlogWriter::Impl {
     gnss_.timestamp = rawlog::to_mrpt(fix.t_ns);
     gnss_.originalReceivedTimestamp = gnss_.timestamp;
     rawlog::encode_fix(fix, gnss_);
-    archive_.put(gnss_);
+    put(gnss_);
   }
 
   void write(const ReferencePose& pose) {
@@ -91,7 +98,7 @@ class RawlogWriter::Impl {
     reference_.timestamp = rawlog::to_mrpt(pose.t_ns);
     reference_.originalReceivedTimestamp = reference_.timestamp;
     rawlog::encode_reference(pose, reference_);
-    archive_.put(reference_);
+    put(reference_);
   }
 
   void write(const WheelSpeed& speed) {
@@ -99,7 +106,7 @@ class RawlogWriter::Impl {
     require(std::isfinite(speed.forward), "the wheel speed", speed.t_ns);
     odometry_.timestamp = rawlog::to_mrpt(speed.t_ns);
     odometry_.velocityLocal.vx = speed.forward;
-    archive_.put(odometry_);
+    put(odometry_);
   }
 
   void finish() {
@@ -108,6 +115,16 @@ class RawlogWriter::Impl {
   }
 
  private:
+  /// Notes take the stamp of what they precede.
+  void put(const mrpt::obs::CObservation& observation) {
+    if (notes_) {
+      notes_->timestamp = observation.timestamp;
+      archive_.put(*notes_);
+      notes_.reset();
+    }
+    archive_.put(observation);
+  }
+
   void require(bool ok, const char* what, int64_t t_ns) const {
     if (ok || values_ == WrittenValues::any) return;
     throw DataError(
@@ -128,6 +145,7 @@ class RawlogWriter::Impl {
   mrpt::obs::CObservationGPS gnss_;
   mrpt::obs::CObservationGPS reference_;
   mrpt::obs::CObservationOdometry odometry_;
+  std::optional<mrpt::obs::CObservationComment> notes_;  ///< still to be written
   std::optional<Eigen::Vector3d> lever_arm_;
   bool imu_begun_ = false;
 };
@@ -138,6 +156,7 @@ RawlogWriter::RawlogWriter(const std::string& path, const state::Mounting& mount
 RawlogWriter::~RawlogWriter() = default;
 RawlogWriter::RawlogWriter(RawlogWriter&&) noexcept = default;
 
+void RawlogWriter::write(const RecordingNotes& notes) { impl_->write(notes); }
 void RawlogWriter::write(const imu::ImuSample& sample) { impl_->write(sample); }
 void RawlogWriter::write(const ImuIncrement& increment) { impl_->write(increment); }
 void RawlogWriter::write(const GnssFix& fix) { impl_->write(fix); }

@@ -7,6 +7,7 @@
 #include <mrpt/obs/CSensoryFrame.h>
 
 #include <algorithm>
+#include <array>
 
 #include "foucault/core/constants.h"
 #include "foucault/core/so3.h"
@@ -365,6 +366,82 @@ TEST_F(Observations, LabelsChooseTheSensors) {
   RawlogSource source(log_with({&gps, &other}), imu::SampleKind::interval_mean, options);
   EXPECT_EQ(source.gnss_label(), "phone");
   EXPECT_EQ(all<GnssFix>(source).at(0).t_ns, kBegin + 15 * kMs);
+}
+
+mrpt::obs::CObservationIMU half(int64_t t_ns, bool rates, double value) {
+  using namespace mrpt::obs;
+  CObservationIMU imu;
+  imu.sensorLabel = rates ? "gyro" : "accel";
+  imu.timestamp = test::mrpt_stamp(t_ns);
+  for (const auto i : rates ? std::array{IMU_WX, IMU_WY, IMU_WZ}
+                            : std::array{IMU_X_ACC, IMU_Y_ACC, IMU_Z_ACC}) {
+    imu.set(i, value);
+  }
+  return imu;
+}
+
+/// Rates at 100 Hz and forces at 50 Hz, both straight lines of time, so that the joined samples are
+/// exact; the last rates have no force after them.
+TEST_F(Observations, RatesAndForcesInRecordsOfTheirOwnAreJoined) {
+  const std::string path = scratch_.path("halves.rawlog");
+  {
+    test::GzLog log(path);
+    log.write(gps_at(kBegin + 100 * kMs));
+    for (int i = 0; i <= 100; ++i) {
+      log.write(half(kBegin + i * 10 * kMs, true, 0.01 * i));
+      if (i % 2 == 0) log.write(half(kBegin + (i * 10 - 3) * kMs, false, 1 + 0.5 * (i - 0.3)));
+    }
+  }
+  RawlogSource source(path, imu::SampleKind::interval_mean);
+  const std::vector<ImuIncrement> increments = all<ImuIncrement>(source);
+  ASSERT_EQ(increments.size(), 99U);  // of samples 0 to 99: 0 to 98 end an interval, 99 is lost
+  for (size_t i = 0; i < increments.size(); ++i) {
+    const auto k = static_cast<double>(i + 1);
+    ASSERT_EQ(increments[i].t_end_ns, kBegin + static_cast<int64_t>(i + 1) * 10 * kMs);
+    EXPECT_NEAR(increments[i].dtheta_b.y(), 0.01 * k * 0.01, 1e-12);
+    EXPECT_NEAR(increments[i].dvel_b.z(), (1 + 0.5 * k) * 0.01, 1e-12);
+  }
+  EXPECT_EQ(read_rawlog_info(path).imu_label, "gyro");
+}
+
+/// MRPT's grabber: a record for each sentence, labelled by its kind.
+TEST_F(Observations, SentencesOfOneTimeAreJoined) {
+  for (const bool velocity_first : {false, true}) {
+    const auto position = gps_at(kBegin + 5 * kMs, "gps_NMEA_GGA");
+    auto velocity = gps_at(kBegin + 5 * kMs, "gps_NMEA_RMC");
+    velocity.messages.clear();
+    gnss::Message_NMEA_RMC rmc;
+    rmc.fields.validity_char = 'A';
+    rmc.fields.speed_knots = 10;
+    rmc.fields.direction_degrees = 90;
+    velocity.setMsg(rmc);
+    auto stale = velocity;
+    stale.timestamp = test::mrpt_stamp(kBegin + 6 * kMs);
+    const std::string path =
+        velocity_first ? log_with({&velocity, &position}) : log_with({&position, &velocity, &stale});
+    RawlogSource source(path);
+    const std::vector<GnssFix> fixes = all<GnssFix>(source);
+    ASSERT_EQ(fixes.size(), 1U);
+    ASSERT_TRUE(fixes[0].velocity_n);
+    EXPECT_NEAR(fixes[0].velocity_n->y(), 10 * 1852.0 / 3600, 1e-12);
+  }
+}
+
+TEST_F(Observations, PositionsOfRmcWhereThereAreNoOthers) {
+  auto gps = gps_at(kBegin + 5 * kMs);
+  gps.messages.clear();
+  gnss::Message_NMEA_RMC rmc;
+  rmc.fields.validity_char = 'A';
+  rmc.fields.latitude_degrees = 47.5;
+  rmc.fields.longitude_degrees = 8.25;
+  gps.setMsg(rmc);
+  RawlogSource source(log_with({&gps}));
+  const std::vector<GnssFix> fixes = all<GnssFix>(source);
+  ASSERT_EQ(fixes.size(), 1U);
+  EXPECT_DOUBLE_EQ(fixes[0].antenna.latitude, 47.5 * kDegree);
+  EXPECT_EQ(fixes[0].position_covariance(2, 2), 1e6);
+  ASSERT_EQ(source.notices().size(), 1U);
+  EXPECT_THAT(source.notices()[0].text, ::testing::HasSubstr("without heights"));
 }
 
 TEST_F(Observations, SensoryFramesReadLikeLooseObservations) {

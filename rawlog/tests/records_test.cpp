@@ -316,6 +316,56 @@ TEST(GpsRecords, Version10) {
   expect_as_mrpt_reads(bytes, read_gps);
 }
 
+/// As MRPT from 2.11.12 (version 12) and 2.15 (version 13) on writes them: github.com/MRPT/mrpt,
+/// CObservationGPS.cpp, optional_serialization.h, CMatrixD.cpp.
+std::string new_gps(int version, bool with_covariance, int fix_type) {
+  const std::string of_11 = serialized(gps_at(kBegin));
+  const size_t pose_end = of_11.find('\x88', of_11.find("CPose3D")) + 1;
+  Fields more("x", 0);
+  more.text("std::optional").text("CMatrixFixed<double,3,3>").add(uint8_t{with_covariance});
+  if (with_covariance) {
+    Fields matrix("mrpt::math::CMatrixD", 0);
+    matrix.add(uint32_t{3}).add(uint32_t{3});
+    for (const double value : {4.0, 0.5, 0.25, 0.5, 9.0, -0.75, 0.25, -0.75, 16.0}) {
+      matrix.add(value);
+    }
+    more.raw(matrix.end());
+  }
+  if (version >= 13) more.add(static_cast<uint8_t>(fix_type)).add(uint16_t{9});
+  const std::string fields = more.end().substr(3);  // without its header
+  std::string bytes = of_11.substr(0, pose_end + 1) + fields.substr(0, fields.size() - 1) +
+                      of_11.substr(pose_end + 1);
+  bytes[bytes.find("CObservationGPS") + 15] = static_cast<char>(version);
+  return bytes;
+}
+
+TEST(GpsRecords, Versions12And13) {
+  for (const int version : {12, 13}) {
+    for (const bool with_covariance : {false, true}) {
+      const std::string bytes = new_gps(version, with_covariance, GpsRecord::kRtkFloat);
+      const auto read = std::dynamic_pointer_cast<GpsRecord>(read_all(bytes, read_gps));
+      ASSERT_TRUE(read);
+      EXPECT_EQ(read->kind_of_fix, version == 13 ? GpsRecord::kRtkFloat : GpsRecord::kUnknown);
+      EXPECT_EQ(read->position_covariance_w.has_value(), with_covariance);
+      EXPECT_EQ(read->messages.size(), 1U);
+      const GnssFix fix = decode_fix(*read, kBegin).value();
+      EXPECT_EQ(fix.quality, version == 13 ? FixQuality::float_rtk : FixQuality::fixed_rtk);
+      if (with_covariance) {  // east, north, up to north, east, down
+        const Eigen::Matrix3d expected =
+            (Eigen::Matrix3d() << 9, 0.5, 0.75, 0.5, 4, -0.25, 0.75, -0.25, 16).finished();
+        EXPECT_EQ(fix.position_covariance, expected);
+      } else {
+        EXPECT_LT(fix.position_covariance(0, 0), 1);
+      }
+      expect_pieces_too_short(bytes, read_gps);
+    }
+  }
+  const std::string no_fix = new_gps(13, false, GpsRecord::kNoFix);
+  const auto read = std::dynamic_pointer_cast<GpsRecord>(read_all(no_fix, read_gps));
+  EXPECT_FALSE(decode_fix(*read, kBegin));
+  EXPECT_THROW(read_all(new_gps(14, false, 0), read_gps), UnknownVersion);
+}
+
 std::string float_matrix() {
   Fields matrix("CMatrixF", 0);
   matrix.add(uint32_t{4}).add(uint32_t{4});
@@ -399,6 +449,14 @@ TEST(GpsRecords, NovatelFramesWithABody) {
   const std::string bytes = serialized(gps);
   EXPECT_TRUE(read_all(bytes, read_gps));
   expect_pieces_too_short(bytes, read_gps);
+}
+
+TEST(CommentRecords, AsMrptWritesThem) {
+  mrpt::obs::CObservationComment comment;
+  comment.text = "a text";
+  comment.sensorLabel = "label";
+  comment.timestamp = test::mrpt_stamp(kBegin);
+  expect_as_mrpt_reads(serialized(comment), read_comment);
 }
 
 TEST(OdometryRecords, OfEveryVersion) {

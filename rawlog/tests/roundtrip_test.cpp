@@ -346,5 +346,87 @@ TEST(Writer, SaysWhereItCannotWrite) {
               ::testing::HasSubstr("is a directory"));
 }
 
+TEST(RoundTrip, NotesStandBeforeAllElse) {
+  const Scratch scratch;
+  GnssFix fix;
+  fix.t_ns = kBegin;
+  fix.antenna = {0.8, 0.1, 400};
+  fix.position_covariance.setIdentity();
+  std::mt19937 rng{3};
+  for (const char* lever_arm : {"given", "unknown", "not_told"}) {
+    const std::string path = scratch.path("notes.rawlog");
+    RecordingNotes notes;
+    notes.lever_arm = lever_arm;
+    notes.imu.samples = "instantaneous";
+    notes.imu.arw_deg_sqrt_h = 3.4;
+    {
+      RawlogWriter writer(path);
+      writer.write(notes);
+      writer.write(fix);
+      for (const ImuIncrement& increment : random_increments(rng, 10)) writer.write(increment);
+      writer.finish();
+    }
+    const RecordingNotes read = read_notes(path);
+    EXPECT_EQ(read.lever_arm, lever_arm);
+    EXPECT_EQ(read.imu.samples, "instantaneous");
+    EXPECT_EQ(read.imu.arw_deg_sqrt_h, 3.4);
+    EXPECT_FALSE(read.imu.vrw_m_s_sqrt_h);
+    RawlogSource source(path);
+    const Contents contents = read_all(source);
+    ASSERT_EQ(contents.fixes.size(), 1U);
+    EXPECT_EQ(contents.fixes[0].lever_arm_known, lever_arm == std::string("given"));
+    EXPECT_TRUE(source.counts().skipped.empty());
+  }
+}
+
+TEST(RoundTrip, ALogWithoutNotesTellsNothing) {
+  const Scratch scratch;
+  const std::string path = scratch.path("bare.rawlog");
+  GnssFix fix;
+  fix.t_ns = kBegin;
+  fix.antenna = {0.8, 0.1, 400};
+  fix.position_covariance.setIdentity();
+  fix.p_b_a = Eigen::Vector3d(1, 0, 0);
+  std::mt19937 rng{3};
+  {
+    RawlogWriter writer(path);
+    writer.write(fix);
+    for (const ImuIncrement& increment : random_increments(rng, 10)) writer.write(increment);
+    writer.finish();
+  }
+  EXPECT_EQ(read_notes(path).lever_arm, "not_told");
+  RawlogSource source(path);
+  EXPECT_TRUE(read_all(source).fixes.at(0).lever_arm_known);  // it is there
+}
+
+TEST(RoundTrip, WhatAReceiverTellsOfAFix) {
+  const Scratch scratch;
+  const std::string path = scratch.path("details.rawlog");
+  GnssFix fix;
+  fix.t_ns = kBegin;
+  fix.antenna = {0.8, 0.1, 400};
+  fix.position_covariance.setIdentity();
+  fix.details = {17, 0.75, 1.5};
+  std::mt19937 rng{3};
+  {
+    RawlogWriter writer(path);
+    writer.write(fix);
+    fix.t_ns += 1'000'000;
+    fix.details = {};
+    writer.write(fix);
+    for (const ImuIncrement& increment : random_increments(rng, 10)) writer.write(increment);
+    writer.finish();
+  }
+  RawlogSource source(path);
+  const Contents contents = read_all(source);
+  ASSERT_EQ(contents.fixes.size(), 2U);
+  EXPECT_EQ(contents.fixes[0].details.satellites, 17);
+  EXPECT_EQ(contents.fixes[0].details.hdop, 0.75);
+  EXPECT_EQ(contents.fixes[0].details.correction_age, 1.5);
+  EXPECT_FALSE(contents.fixes[1].details.satellites);
+  EXPECT_FALSE(contents.fixes[1].details.hdop);
+  EXPECT_FALSE(contents.fixes[1].details.correction_age);
+}
+
 }  // namespace
 }  // namespace foucault::rawlog

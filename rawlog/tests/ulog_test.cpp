@@ -258,7 +258,7 @@ TEST_F(Ulog, LeverArmOfTheParameters) {
   log_.parameter("EKF2_GPS_POS_Y", 0.0F);
   log_.parameter("EKF2_GPS_POS_Z", -0.25F);
   log_.parameter("EKF2_IMU_POS_X", 0.25F);
-  EXPECT_LT((import().lever_arm_v - Eigen::Vector3d(0.25, 0, -0.25)).norm(), 1e-12);
+  EXPECT_LT((import().lever_arm_v.value() - Eigen::Vector3d(0.25, 0, -0.25)).norm(), 1e-12);
 }
 
 TEST_F(Ulog, ATruncatedLogNamesTheByte) {

@@ -75,7 +75,7 @@ std::function<void(Call&)> declare_check(CLI::App& app) {
   return [options](Call& call) {
     Settings settings;
     apply(options->config, settings);
-    check(options->log, settings, call.console);
+    check(options->log, settings_for(options->log, settings), call.console);
   };
 }
 

@@ -53,6 +53,7 @@ std::function<void(Call&)> declare_simulate(CLI::App& app) {
     SimulationSettings settings;
     apply(o->config, settings);
     if (o->imu) settings.imu.preset = *o->imu;
+    settings.imu = settings.imu.completed_by({});
     if (o->duration) set_config(fmt::format("scenario.duration_s={}", *o->duration), settings);
     if (o->seed) set_config(fmt::format("scenario.seed={}", *o->seed), settings);
     const SimulationCounts counts =

@@ -165,7 +165,8 @@ std::vector<EvaluationCase> cross(const std::vector<std::string>& logs,
   std::vector<EvaluationCase> cases;
   for (std::size_t i = 0; i < logs.size(); ++i) {
     for (const std::string& method : methods) {
-      cases.push_back({logs[i], names[i], settings.imu.preset, method, "", settings});
+      const Settings of_log = settings_for(logs[i], settings);
+      cases.push_back({logs[i], names[i], of_log.imu.preset, method, "", of_log});
     }
   }
   return cases;

@@ -93,7 +93,7 @@ RunResult run_into(const RunJob& job, const std::filesystem::path& folder, Conso
   std::optional<Profile> profile;
   if (job.profile) profile.emplace().add(Stage::start, process_cpu_s());
   const ResourceMeter meter;
-  Settings settings = job.settings;
+  Settings settings = settings_for(job.log, job.settings);
   const std::string config = dump_config(settings);
   const Method& method = find_method(job.method);
 

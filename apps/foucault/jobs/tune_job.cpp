@@ -50,7 +50,7 @@ void check(const TuneJob& job) {
 tuning::SearchPlan plan(const TuneJob& job, Console& console) {
   const auto runs = [&job](const std::string& log, const std::string& method,
                            const tuning::GridPoint& point) {
-    const Settings settings = job.at(point);
+    const Settings settings = settings_for(log, job.at(point));
     return experiment_runs({log, log, settings.imu.preset, method, "", settings});
   };
   return {job.config,

@@ -28,7 +28,10 @@ FixGuard::Verdict Examination::admit(const GnssFix& given) {
   const FixGuard::Verdict verdict = fix_guard_.look_at(given);
   if (!verdict.fix) return verdict;
   const GnssFix& fix = *verdict.fix;
-  if (!lever_arm_) lever_arm_ = fix.p_b_a.norm();
+  if (!lever_arm_) {
+    lever_arm_ = fix.p_b_a.norm();
+    lever_arm_known_ = fix.lever_arm_known;
+  }
   sigmas_.add(fix.position_covariance);
   if (!options_.allows(fix)) return verdict;
   rest_.add(fix);
@@ -53,6 +56,7 @@ LogFacts Examination::facts() const {
                                     std::min(facts.imu.last_ns, facts.gnss.last_ns));
   facts.sigmas = sigmas_;
   facts.lever_arm_m = lever_arm_;
+  facts.lever_arm_known = lever_arm_known_;
   facts.force = plausibility_.force();
   facts.rest = rest_.facts();
   facts.commutation = commutation_.facts();

@@ -130,8 +130,8 @@ void judge_sigmas(const LogFacts& facts, Judgement& out) {
 void judge_lever_arm(const LogFacts& facts, Judgement& out) {
   if (!facts.lever_arm_m) return;
   const std::string text = fmt::format("{:.3f} m", *facts.lever_arm_m);
-  if (*facts.lever_arm_m == 0) {
-    out.warn("lever arm", "zero", "give it in the import, unless the antenna is on the IMU");
+  if (!facts.lever_arm_known) {
+    out.warn("lever arm", "not known, zero is taken", "give it in the import (--lever-arm X,Y,Z)");
   } else if (*facts.lever_arm_m > 10) {
     out.warn("lever arm", text, "is it in metres, and from the IMU to the antenna?");
   } else {

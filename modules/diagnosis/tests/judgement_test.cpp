@@ -19,6 +19,7 @@ LogFacts good() {
   facts.overlap_s = 100;
   facts.sigmas = {0, 0.02, 1.5};
   facts.lever_arm_m = 0.5;
+  facts.lever_arm_known = true;
   facts.force.mean = {0, 0, -9.8};
   facts.force.length = 9.8;
   facts.force.seconds = 100;
@@ -131,7 +132,10 @@ TEST_F(Complaint, Sigmas) {
 
 TEST_F(Complaint, LeverArm) {
   facts_.lever_arm_m = 0;
-  EXPECT_THAT(complaints(facts_), HasSubstr("warning lever arm: zero"));
+  EXPECT_THAT(complaints(facts_), Not(HasSubstr("lever arm")));  // it was given
+  facts_.lever_arm_known = false;
+  EXPECT_THAT(complaints(facts_), HasSubstr("warning lever arm: not known"));
+  facts_.lever_arm_known = true;
   facts_.lever_arm_m = 50;
   EXPECT_THAT(complaints(facts_), HasSubstr("is it in metres"));
 }

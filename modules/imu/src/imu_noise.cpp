@@ -68,6 +68,13 @@ MarkovBias markov_bias(double turn_on_sigma, double sigma, double tau) {
   return {std::sqrt(variance), tau * variance / (sigma * sigma)};
 }
 
+constexpr const char* kDefaultPreset = "ADIS16465";
+
+std::vector<std::string> with_as_recorded(std::vector<std::string> names) {
+  names.insert(names.begin(), ImuOptions::kAsRecorded);
+  return names;
+}
+
 void override_with(const std::optional<double>& value, double unit, double& target) {
   if (value) target = *value * unit;
 }
@@ -97,10 +104,12 @@ ImuNoise imu_preset(const std::string& name) {
 }
 
 void ImuOptions::fields(ConfigFields& f) {
-  f.text("preset", preset, imu_preset_names(), "IMU whose noise is taken; keys below override it");
-  f.text(
-      "samples", samples, {"interval_mean", "instantaneous"},
-      "interval_mean: mean over the interval that ends at the stamp; instantaneous: at the stamp");
+  f.text("preset", preset, with_as_recorded(imu_preset_names()),
+         "IMU whose noise is taken, keys below override it; as_recorded: what the log says, else "
+         "ADIS16465");
+  f.text("samples", samples, {kAsRecorded, "interval_mean", "instantaneous"},
+         "interval_mean: mean over the interval that ends at the stamp; instantaneous: at the "
+         "stamp; as_recorded: what the log says, else interval_mean");
   f.optional_number("arw_deg_sqrt_h", arw_deg_sqrt_h, kNotNegative,
                     "gyroscope white noise (angle random walk)");
   f.optional_number("vrw_m_s_sqrt_h", vrw_m_s_sqrt_h, kNotNegative,
@@ -117,7 +126,7 @@ void ImuOptions::fields(ConfigFields& f) {
 }
 
 ImuNoise ImuOptions::noise() const {
-  ImuNoise noise = imu_preset(preset);
+  ImuNoise noise = imu_preset(preset == kAsRecorded ? kDefaultPreset : preset);
   override_with(arw_deg_sqrt_h, kDegPerSqrtHour, noise.gyro_noise_density);
   override_with(vrw_m_s_sqrt_h, kMPerSPerSqrtHour, noise.accel_noise_density);
   override_with(gyro_bias_deg_h, kDegPerHour, noise.gyro_bias_sigma);
@@ -126,6 +135,22 @@ ImuNoise ImuOptions::noise() const {
   override_with(gyro_turn_on_deg_h, kDegPerHour, noise.gyro_turn_on_sigma);
   override_with(accel_turn_on_mgal, kMilliGal, noise.accel_turn_on_sigma);
   return noise;
+}
+
+ImuOptions ImuOptions::completed_by(const ImuOptions& recorded) const {
+  ImuOptions out = *this;
+  if (samples == kAsRecorded) {
+    out.samples = recorded.samples == kAsRecorded ? "interval_mean" : recorded.samples;
+  }
+  if (preset != kAsRecorded) return out;
+  out.preset = recorded.preset == kAsRecorded ? kDefaultPreset : recorded.preset;
+  for (const auto value :
+       {&ImuOptions::arw_deg_sqrt_h, &ImuOptions::vrw_m_s_sqrt_h, &ImuOptions::gyro_bias_deg_h,
+        &ImuOptions::accel_bias_mgal, &ImuOptions::bias_tau_s, &ImuOptions::gyro_turn_on_deg_h,
+        &ImuOptions::accel_turn_on_mgal}) {
+    if (!(out.*value)) out.*value = recorded.*value;
+  }
+  return out;
 }
 
 ImuOptions ImuOptions::scaled(double factor) const {
@@ -141,7 +166,7 @@ ImuOptions ImuOptions::scaled(double factor) const {
 }
 
 SampleKind ImuOptions::sample_kind() const {
-  if (samples == "interval_mean") return SampleKind::interval_mean;
+  if (samples == "interval_mean" || samples == kAsRecorded) return SampleKind::interval_mean;
   if (samples == "instantaneous") return SampleKind::instantaneous;
   throw UsageError(
       fmt::format("imu.samples: unknown kind '{}'; use interval_mean or instantaneous", samples));

@@ -113,6 +113,33 @@ TEST(ImuOptions, DefaultIsThePreset) {
   EXPECT_EQ(ImuOptions().sample_kind(), SampleKind::interval_mean);
 }
 
+TEST(ImuOptions, CompletedByWhatTheLogSays) {
+  ImuOptions recorded;
+  recorded.samples = "instantaneous";
+  recorded.arw_deg_sqrt_h = 3.5;
+  ImuOptions open;
+  open.vrw_m_s_sqrt_h = 0.5;
+  const ImuOptions both = open.completed_by(recorded);
+  EXPECT_EQ(both.sample_kind(), SampleKind::instantaneous);
+  EXPECT_EQ(both.preset, "ADIS16465");
+  EXPECT_EQ(both.arw_deg_sqrt_h, 3.5);
+  EXPECT_EQ(both.vrw_m_s_sqrt_h, 0.5);
+
+  recorded.preset = "ICM20602";
+  EXPECT_EQ(open.completed_by(recorded).preset, "ICM20602");
+  ImuOptions chosen;  // a preset is another sensor: none of the log's noise is mixed in
+  chosen.preset = "navigation";
+  chosen.samples = "interval_mean";
+  const ImuOptions of_chosen = chosen.completed_by(recorded);
+  EXPECT_EQ(of_chosen.preset, "navigation");
+  EXPECT_FALSE(of_chosen.arw_deg_sqrt_h);
+  EXPECT_EQ(of_chosen.sample_kind(), SampleKind::interval_mean);
+
+  const ImuOptions by_nothing = ImuOptions().completed_by(ImuOptions());
+  EXPECT_EQ(by_nothing.preset, "ADIS16465");
+  EXPECT_EQ(by_nothing.samples, "interval_mean");
+}
+
 TEST(ImuOptions, WrongValuesAreUsageErrors) {
   ImuOptions options;
   EXPECT_THROW(set_config("preset=Wii", options), UsageError);

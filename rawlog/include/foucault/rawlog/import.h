@@ -46,8 +46,8 @@ struct ImportSummary {
   int64_t wheel_speeds = 0;
   int64_t with_velocity = 0;
   std::map<FixQuality, int64_t> qualities;
-  Eigen::Vector3d lever_arm_v =
-      Eigen::Vector3d::Zero();  ///< IMU to antenna, forward-right-down [m]
+  /// IMU to antenna, forward-right-down [m]; none: not known, zero was written.
+  std::optional<Eigen::Vector3d> lever_arm_v;
 };
 
 }  // namespace foucault::rawlog

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "foucault/core/config.h"
+#include "foucault/imu/imu_noise.h"
 #include "foucault/state/interfaces.h"
 
 /// The YAML mapping of the importers `csv`, `rtklib` and `nmea`: names files, columns, units, axes
@@ -59,6 +60,9 @@ class ImuMapping : public TableMapping {
   std::vector<std::string> axes = {"x", "y", "z"};
   /// Roll, pitch, heading [deg] of the sensor, on those axes, in the vehicle.
   Eigen::Vector3d mounting_rpy_deg = Eigen::Vector3d::Zero();
+  /// What a run needs to know of the sensor, as in section `imu` of its configuration: how samples
+  /// are to be read, noise. Goes into the notes of the log.
+  imu::ImuOptions sensor;
 
   void fields(ConfigFields& f) override;
   /// Throws UsageError if `axes` is no right-handed set of three.
@@ -112,9 +116,11 @@ class ImportMapping : public Configurable {
   ImuMapping imu;
   GnssMapping gnss;
   ReferenceMapping reference;
-  Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Zero();  ///< IMU to antenna, forward-right-down
+  std::vector<double> lever_arm_m;  ///< IMU to antenna, forward-right-down; empty: not known
 
   void fields(ConfigFields& f) override;
+  /// Throws UsageError if `lever_arm_m` is neither empty nor three numbers.
+  std::optional<Eigen::Vector3d> lever_arm() const;
 };
 
 }  // namespace foucault::rawlog

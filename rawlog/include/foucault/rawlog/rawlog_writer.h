@@ -7,6 +7,7 @@
 
 #include "foucault/core/measurement.h"
 #include "foucault/imu/increments.h"
+#include "foucault/rawlog/recording_notes.h"
 #include "foucault/state/interfaces.h"
 
 namespace foucault::rawlog {
@@ -27,9 +28,10 @@ enum class WrittenValues {
 /// `samples: interval_mean` gets the increments back to double rounding (stamps have MRPT's 100 ns
 /// resolution; rates are taken over the rounded interval, and a sample at the beginning of the
 /// first increment precedes it). GnssFix: NovAtel BESTPOS (ellipsoidal height, undulation 0, sigmas
-/// as float, quality as position type), with a TopCon PZS beside it when there is a velocity or
-/// when covariances are not diagonal. ReferencePose: NovAtel INSPVAS, label REFERENCE (absent
-/// velocity or attitude as NaN). WheelSpeed: CObservationOdometry.
+/// as float, quality as position type) and NMEA GGA (for programs that look for nothing else), with
+/// a TopCon PZS beside them when there is a velocity or when covariances are not diagonal.
+/// ReferencePose: NovAtel INSPVAS, label REFERENCE (absent velocity or attitude as NaN).
+/// WheelSpeed: CObservationOdometry. RecordingNotes: CObservationComment.
 ///
 /// sensorPose: the IMU sits at the vehicle's origin, turned by the mounting; antennas at R_v_b
 /// p_b_a; forward-left-up as MRPT has it.
@@ -44,6 +46,8 @@ class RawlogWriter {
   ~RawlogWriter();
   RawlogWriter(RawlogWriter&&) noexcept;
 
+  /// Before everything else.
+  void write(const RecordingNotes& notes);
   void write(const imu::ImuSample& sample);
   void write(const ImuIncrement& increment);
   void write(const GnssFix& fix);

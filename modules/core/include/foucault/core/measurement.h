@@ -31,6 +31,13 @@ struct ImuIncrement {
   double dt() const { return static_cast<double>(t_end_ns - t_begin_ns) * 1e-9; }  ///< [s]
 };
 
+/// What a receiver tells of a fix beside its accuracy.
+struct FixDetails {
+  std::optional<int> satellites;  ///< used in it
+  std::optional<double> hdop;
+  std::optional<double> correction_age;  ///< [s]
+};
+
 /// A GNSS position of the antenna, with velocity where the receiver gives one.
 struct GnssFix {
   int64_t t_ns = 0;
@@ -40,6 +47,8 @@ struct GnssFix {
   Eigen::Matrix3d velocity_covariance = Eigen::Matrix3d::Zero();  ///< [m^2/s^2]
   FixQuality quality = FixQuality::unknown;
   Eigen::Vector3d p_b_a = Eigen::Vector3d::Zero();  ///< lever arm, IMU to antenna, in b [m]
+  bool lever_arm_known = true;                      ///< else p_b_a is zero for want of a better one
+  FixDetails details;
 };
 
 /// A pose of a reference system, of the IMU centre, on the vehicle's axes.

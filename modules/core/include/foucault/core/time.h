@@ -12,6 +12,7 @@
 namespace foucault {
 
 constexpr int64_t kNanosecondsPerSecond = 1'000'000'000;
+constexpr int64_t kNanosecondsPerDay = kSecondsPerDay * kNanosecondsPerSecond;
 constexpr int64_t kNanosecondsPerWeek = kSecondsPerWeek * kNanosecondsPerSecond;
 
 /// end - begin [s].

@@ -54,6 +54,7 @@ class Examination {
   StreamWatch imu_, gnss_;
   SigmaFacts sigmas_;
   std::optional<double> lever_arm_;
+  bool lever_arm_known_ = false;
   RestWatch rest_;
   CommutationWatch commutation_;
   ReferenceWatch reference_;

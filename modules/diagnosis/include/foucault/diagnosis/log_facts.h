@@ -23,6 +23,7 @@ struct LogFacts {
   double overlap_s = 0;
   SigmaFacts sigmas;
   std::optional<double> lever_arm_m;  ///< of the first fix
+  bool lever_arm_known = false;
   ForceFacts force;                   ///< its mean forward, right, down
   RestFacts rest;
   CommutationFacts commutation;

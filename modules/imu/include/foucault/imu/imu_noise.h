@@ -41,8 +41,11 @@ enum class SampleKind { instantaneous, interval_mean };
 /// value. Units in the keys are those of data sheets.
 class ImuOptions : public Configurable {
  public:
-  std::string preset = "ADIS16465";
-  std::string samples = "interval_mean";
+  /// Of `preset` and `samples`: what the log says; else an ADIS16465, and means over intervals.
+  static constexpr const char* kAsRecorded = "as_recorded";
+
+  std::string preset = kAsRecorded;
+  std::string samples = kAsRecorded;
   std::optional<double> arw_deg_sqrt_h, vrw_m_s_sqrt_h, gyro_bias_deg_h, accel_bias_mgal,
       bias_tau_s, gyro_turn_on_deg_h, accel_turn_on_mgal;
 
@@ -51,6 +54,10 @@ class ImuOptions : public Configurable {
   /// The preset with the overrides, in SI. Throws UsageError for an unknown preset.
   ImuNoise noise() const;
   SampleKind sample_kind() const;
+
+  /// With what a log says of its IMU, where this leaves it to the log; the noise as a whole, unless
+  /// a preset is chosen here. Nothing is as recorded then.
+  ImuOptions completed_by(const ImuOptions& recorded) const;
 
   /// The same with every sigma and noise density `factor` times as large.
   ImuOptions scaled(double factor) const;
