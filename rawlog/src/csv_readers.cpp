@@ -11,6 +11,7 @@
 #include "foucault/core/constants.h"
 #include "foucault/core/error.h"
 #include "foucault/core/so3.h"
+#include "nmea_accuracy.h"
 #include "position_columns.h"
 #include "table_units.h"
 
@@ -322,12 +323,15 @@ class GnssReader : public RecordReader {
                  joined({kPosition,
                          velocity_roles(),
                          {"speed", "bearing", "sigma_velocity", "sigma_north", "sigma_east",
-                          "sigma_down", "sigma_horizontal", "sigma_vertical", "quality"}})),
+                          "sigma_down", "sigma_horizontal", "sigma_vertical", "quality",
+                          "satellites", "hdop", "correction_age"}})),
         time_(mapping.time, columns_),
         position_(mapping, columns_, path),
         sigma_(mapping, columns_),
         velocity_(mapping, columns_),
-        quality_(mapping, columns_) {}
+        quality_(mapping, columns_),
+        details_{columns_.find("satellites"), columns_.find("hdop"),
+                 columns_.find("correction_age")} {}
 
   const TextTable& table() const override { return table_; }
   int64_t without_fix() const override { return without_fix_; }
@@ -350,9 +354,25 @@ class GnssReader : public RecordReader {
     fix.antenna = position_.position(row);
     fix.position_covariance = sigma_.covariance(row);
     velocity_.add_to(fix, row);
+    fix.details = details(row);
     fix.t_ns = time_.stamp(row);
     order_.check(row, fix.t_ns);
     return fix;
+  }
+
+  /// Blank and zero: not told.
+  FixDetails details(const Row& row) const {
+    std::array<std::optional<double>, 3> told;
+    for (size_t i = 0; i < told.size(); ++i) {
+      if (!details_[i] || row.is_blank(*details_[i])) continue;
+      const double value = row.number(*details_[i]);
+      if (value > 0) told[i] = value;
+    }
+    FixDetails details;
+    if (told[0]) details.satellites = static_cast<int>(std::min(*told[0], 255.0));
+    details.hdop = told[1];
+    details.correction_age = told[2];
+    return details;
   }
 
   TextTable table_;
@@ -362,6 +382,7 @@ class GnssReader : public RecordReader {
   SigmaColumns sigma_;
   GnssVelocity velocity_;
   QualityColumn quality_;
+  std::array<std::optional<size_t>, 3> details_;  ///< satellites, HDOP, age of corrections
   StampOrder order_;
   int64_t without_fix_ = 0;
 };

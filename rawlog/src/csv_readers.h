@@ -11,9 +11,6 @@
 /// Readers of tables told by a mapping.
 namespace foucault::rawlog {
 
-/// Of the vertical speed where only the one along the ground is known [m/s].
-inline constexpr double kOpenVerticalSigma = 10;
-
 /// What a mapping file says, and where its files lie.
 struct MappingSource {
   std::string mapping;  ///< YAML

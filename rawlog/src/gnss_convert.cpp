@@ -9,9 +9,10 @@
 #include "foucault/core/so3.h"
 #include "foucault/core/time.h"
 #include "foucault/geodesy/wgs84.h"
+#include "foucault/rawlog/mrpt_convert.h"
 #include "foucault/rawlog/rawlog_source.h"
-#include "mrpt_convert.h"
 #include "mrpt_records.h"
+#include "nmea_accuracy.h"
 
 /// GPS records of MRPT to fixes and back.
 namespace foucault::rawlog {
@@ -24,11 +25,7 @@ namespace solution_status = mrpt::obs::gnss::nv_oem6_solution_status;
 namespace ins_status = mrpt::obs::gnss::nv_oem6_ins_status_type;
 
 constexpr double kKnot = 1852.0 / kSecondsPerHour;
-/// Of velocities that come without one [m/s]: from a speed and a course along the ground, which
-/// leave the vertical open, or from a velocity vector.
-constexpr double kSpeedSigma = 0.2;
-constexpr double kOpenVerticalSigma = 10;
-constexpr double kVelocitySigma = 0.1;
+constexpr double kVelocitySigma = 0.1;  ///< of a velocity vector that comes without one [m/s]
 /// Spherical error probable of an isotropic error of sigma 1.
 constexpr double kSepPerSigma = 1.5382;
 constexpr uint32_t kMostSatellites = 256;
@@ -334,7 +331,7 @@ FixDetails details_of(const mrpt::obs::CObservationGPS& gps) {
 
 GroundVelocity ground_velocity(double speed, double course) {
   return {Eigen::Vector3d(speed * std::cos(course), speed * std::sin(course), 0),
-          diagonal(kSpeedSigma, kSpeedSigma, kOpenVerticalSigma)};
+          diagonal(kGroundSpeedSigma, kGroundSpeedSigma, kOpenVerticalSigma)};
 }
 
 // Receivers of newer MRPT -----------------------------------------------------------------------

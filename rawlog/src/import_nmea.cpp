@@ -10,34 +10,16 @@
 #include "foucault/core/error.h"
 #include "foucault/core/fix_quality.h"
 #include "foucault/core/time.h"
+#include "nmea_accuracy.h"
 #include "nmea_sentences.h"
 
 namespace foucault::rawlog {
 
 namespace {
 
-constexpr double kVerticalRatio = 2;     ///< sigma down to sigma north or east
-constexpr double kVelocitySigma = 0.1;   ///< north, east, of a Doppler solution [m/s]
 constexpr double kSmallestSigma = 1e-5;  ///< [m]
 constexpr double kLargestSigma = 1e6;    ///< [m]
 constexpr double kLargestHeight = 1e8;   ///< [m]
-
-/// Sigma north and east at an HDOP of 1, where nobody tells [m].
-double assumed_sigma(FixQuality quality) {
-  switch (quality) {
-    case FixQuality::fixed_rtk:
-      return 0.02;
-    case FixQuality::float_rtk:
-      return 0.3;
-    case FixQuality::ppp:
-    case FixQuality::differential:
-      return 1;
-    case FixQuality::single:
-    case FixQuality::unknown:
-      break;
-  }
-  return 3;
-}
 
 class NmeaReader : public RecordReader {
  public:
@@ -71,7 +53,8 @@ class NmeaReader : public RecordReader {
     if (!assumed_.empty()) {
       std::vector<std::string> parts;
       for (const FixQuality quality : assumed_) {
-        parts.push_back(fmt::format("{} m ({})", assumed_sigma(quality), name_of(quality)));
+        parts.push_back(
+            fmt::format("{} m ({})", nmea_sigma(quality, 1).horizontal, name_of(quality)));
       }
       found.push_back(
           fmt::format("{}: no sigmas (GST): HDOP times {} assumed, down twice that; if known, give "
@@ -82,7 +65,7 @@ class NmeaReader : public RecordReader {
       found.push_back(fmt::format(
           "{}: velocities along the ground with an assumed sigma of {} m/s; if known, give "
           "gnss.velocity_sigma_m_s: [north, east, down]",
-          table().path(), kVelocitySigma));
+          table().path(), kGroundSpeedSigma));
     }
     if (epochs_.headings() > 0) {
       found.push_back(
@@ -100,6 +83,7 @@ class NmeaReader : public RecordReader {
     const Row& row = *epoch.row;
     GnssFix fix;
     fix.quality = position.quality;
+    fix.details = position.details;
     fix.antenna = checked_position(row, position.latitude, position.longitude,
                                    position.height + separation(position, row));
     if (std::abs(fix.antenna.height) > kLargestHeight) {
@@ -133,15 +117,18 @@ class NmeaReader : public RecordReader {
 
   /// A missing HDOP counts as 1.
   Eigen::Vector3d sigma_by_hdop(const NmeaPosition& position) {
-    const double hdop = position.hdop && *position.hdop > 0 ? *position.hdop : 1;
-    if (mapping_.sigma_m.size() == 3) return hdop * Eigen::Vector3d(mapping_.sigma_m.data());
+    const std::optional<double>& hdop = position.details.hdop;
+    if (mapping_.sigma_m.size() == 3) {
+      return hdop.value_or(1) * Eigen::Vector3d(mapping_.sigma_m.data());
+    }
     assumed_.insert(position.quality);
-    return hdop * assumed_sigma(position.quality) * Eigen::Vector3d(1, 1, kVerticalRatio);
+    const NmeaSigma sigma = nmea_sigma(position.quality, hdop);
+    return {sigma.horizontal, sigma.horizontal, sigma.vertical};
   }
 
   void add_velocity(GnssFix& fix, const Eigen::Vector2d& velocity) {
     fix.velocity_n = Eigen::Vector3d(velocity.x(), velocity.y(), 0);
-    Eigen::Vector3d sigma(kVelocitySigma, kVelocitySigma, kOpenVerticalSigma);
+    Eigen::Vector3d sigma(kGroundSpeedSigma, kGroundSpeedSigma, kOpenVerticalSigma);
     if (mapping_.velocity_sigma_m_s.size() == 3) {
       sigma = Eigen::Vector3d(mapping_.velocity_sigma_m_s.data());
     } else {

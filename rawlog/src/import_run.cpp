@@ -13,7 +13,7 @@
 #include "foucault/core/error.h"
 #include "foucault/core/hole.h"
 #include "foucault/core/time.h"
-#include "mrpt_convert.h"
+#include "foucault/rawlog/mrpt_convert.h"
 
 namespace foucault::rawlog {
 

@@ -1,4 +1,4 @@
-#include "mrpt_convert.h"
+#include "foucault/rawlog/mrpt_convert.h"
 
 #include "foucault/core/so3.h"
 #include "foucault/core/time.h"

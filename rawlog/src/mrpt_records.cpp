@@ -13,7 +13,7 @@
 #include <type_traits>
 #include <utility>
 
-#include "mrpt_convert.h"
+#include "foucault/rawlog/mrpt_convert.h"
 
 namespace foucault::rawlog {
 

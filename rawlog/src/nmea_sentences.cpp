@@ -215,6 +215,17 @@ void NmeaEpochs::take_timed(std::string_view type, const Row& row) {
   current_->sigma = sigma(row);
 }
 
+/// Zero: not told.
+std::optional<double> positive(const Row& row, size_t field) {
+  const std::optional<double> value = optional_number(row, field);
+  return value && *value > 0 ? value : std::nullopt;
+}
+
+std::optional<int> count(const Row& row, size_t field) {
+  const std::optional<double> value = positive(row, field);
+  return value && *value < 256 ? std::optional<int>(static_cast<int>(*value)) : std::nullopt;
+}
+
 void NmeaEpochs::take_position(const Row& row) {
   if (current_->position) return;  // of a second talker, or written twice
   NmeaPosition position;
@@ -226,7 +237,9 @@ void NmeaEpochs::take_position(const Row& row) {
   position.quality = *found;
   position.latitude = angle(row, 2, 'N', 'S');
   position.longitude = angle(row, 4, 'E', 'W');
-  position.hdop = optional_number(row, 8);
+  position.details.satellites = count(row, 7);
+  position.details.hdop = positive(row, 8);
+  position.details.correction_age = positive(row, 13);
   position.height = row.number(9);
   position.geoid_separation = optional_number(row, 11);
   current_->position = position;

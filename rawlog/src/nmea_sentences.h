@@ -18,7 +18,7 @@ struct NmeaPosition {
   double longitude = 0;                    ///< [rad]
   double height = 0;                       ///< above mean sea level [m]
   std::optional<double> geoid_separation;  ///< [m]
-  std::optional<double> hdop;
+  FixDetails details;
 };
 
 struct NmeaEpoch {

@@ -6,7 +6,7 @@
 
 #include "foucault/core/hole.h"
 #include "foucault/imu/burst_stamps.h"
-#include "mrpt_convert.h"
+#include "foucault/rawlog/mrpt_convert.h"
 #include "notes_comment.h"
 #include "rawlog_stream.h"
 

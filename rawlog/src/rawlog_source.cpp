@@ -17,9 +17,9 @@
 #include "foucault/imu/burst_stamps.h"
 #include "foucault/imu/increments.h"
 #include "foucault/imu/recent_rates.h"
+#include "foucault/rawlog/mrpt_convert.h"
 #include "foucault/rawlog/recording_notes.h"
 #include "imu_halves.h"
-#include "mrpt_convert.h"
 #include "notes_comment.h"
 #include "rawlog_stream.h"
 

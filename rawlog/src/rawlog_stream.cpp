@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "foucault/core/error.h"
-#include "mrpt_convert.h"
+#include "foucault/rawlog/mrpt_convert.h"
 
 namespace foucault::rawlog {
 

@@ -9,8 +9,8 @@
 #include "foucault/core/error.h"
 #include "foucault/core/position.h"
 #include "foucault/core/time.h"
+#include "foucault/rawlog/mrpt_convert.h"
 #include "gz_archive.h"
-#include "mrpt_convert.h"
 #include "notes_comment.h"
 
 namespace foucault::rawlog {

@@ -8,6 +8,7 @@
 #include "foucault/core/time.h"
 #include "foucault/rawlog/import_csv.h"
 #include "foucault/rawlog/rawlog_source.h"
+#include "foucault/rawlog/recording_notes.h"
 #include "scratch.h"
 
 /// Tables as loggers write them: each dialect gives what the plain table gives.
@@ -363,6 +364,29 @@ TEST_F(Dialects, UnitsOfFixes) {
   EXPECT_LT((*fix().velocity_n - Eigen::Vector3d(1, 2, -3)).norm(), 1e-12);
   EXPECT_NEAR(fix().velocity_covariance(2, 2), 2.25, 1e-6);
   EXPECT_NEAR(std::sqrt(fix().position_covariance(2, 2)), 0.5, 1e-6);
+}
+
+TEST_F(Dialects, DetailsOfFixes) {
+  gnss("t,lat,lon,h,ns,dop,age\n100.01,47.5,-8.25,400.5,14,0.75,\n");
+  run("", kTime, "height: h, satellites: ns, hdop: dop, correction_age: age");
+  EXPECT_EQ(fix().details.satellites, 14);
+  EXPECT_EQ(fix().details.hdop, 0.75);
+  EXPECT_FALSE(fix().details.correction_age);
+}
+
+TEST_F(Dialects, NotesForRuns) {
+  EXPECT_FALSE(run().lever_arm_v);
+  EXPECT_EQ(read_notes(options_.out).lever_arm, "unknown");
+  EXPECT_EQ(read_notes(options_.out).imu.samples, imu::ImuOptions::kAsRecorded);
+  EXPECT_FALSE(fix().lever_arm_known);
+  reference_ = "lever_arm_m: [0, 0, 0]\n";
+  run("  sensor: {samples: instantaneous, preset: tactical}\n");
+  EXPECT_EQ(read_notes(options_.out).lever_arm, "given");
+  EXPECT_EQ(read_notes(options_.out).imu.samples, "instantaneous");
+  EXPECT_EQ(read_notes(options_.out).imu.preset, "tactical");
+  EXPECT_TRUE(fix().lever_arm_known);
+  reference_ = "lever_arm_m: [0, 0]\n";
+  EXPECT_THAT(error_of<UsageError>([&] { run(); }), HasSubstr("give three numbers"));
 }
 
 TEST_F(Dialects, SpeedsInKnots) {

@@ -96,6 +96,8 @@ TEST_F(Nmea, SentencesOfAnEpochAreJoined) {
   ASSERT_EQ(found.size(), 2U);
   EXPECT_EQ(found[0].t_ns, kNoon + kSecond / 2);
   EXPECT_EQ(found[0].quality, FixQuality::fixed_rtk);
+  EXPECT_EQ(found[0].details.satellites, 9);
+  EXPECT_EQ(found[0].details.hdop, 2);
   EXPECT_NEAR(found[0].antenna.latitude / kDegree, 47.5, 1e-12);
   EXPECT_NEAR(found[0].antenna.longitude / kDegree, -8.25, 1e-12);
   EXPECT_DOUBLE_EQ(found[0].antenna.height, 447.75);
@@ -174,9 +176,9 @@ TEST_F(Nmea, SigmasByHdopAreSaid) {
   const std::string text = gga("120000.00", 2) + rmc("120000.00", "070224", ",");
   EXPECT_THAT(
       import(text).gnss.notices,
-      ElementsAre(AllOf(HasSubstr("HDOP times 1 m (differential)"), HasSubstr("gnss.sigma_m"))));
+      ElementsAre(AllOf(HasSubstr("HDOP times 0.7 m (differential)"), HasSubstr("gnss.sigma_m"))));
   const Eigen::Vector3d assumed = fixes(text).at(0).position_covariance.diagonal().cwiseSqrt();
-  EXPECT_LT((assumed - Eigen::Vector3d(2, 2, 4)).norm(), 1e-5);  // stored as float
+  EXPECT_LT((assumed - Eigen::Vector3d(1.4, 1.4, 2.8)).norm(), 1e-5);  // stored as float
   mapping("gnss: {sigma_m: [0.5, 0.75, 1.5]}\n");
   EXPECT_TRUE(import(text).gnss.notices.empty());
   const Eigen::Vector3d given = fixes(text).at(0).position_covariance.diagonal().cwiseSqrt();

@@ -16,6 +16,7 @@
 #include "foucault/rawlog/rawlog_info.h"
 #include "foucault/rawlog/rawlog_source.h"
 #include "mrpt_log.h"
+#include "nmea_accuracy.h"
 #include "scratch.h"
 
 /// Logs as other programs write them: MRPT objects in, measurements out.
@@ -373,8 +374,8 @@ mrpt::obs::CObservationIMU half(int64_t t_ns, bool rates, double value) {
   CObservationIMU imu;
   imu.sensorLabel = rates ? "gyro" : "accel";
   imu.timestamp = test::mrpt_stamp(t_ns);
-  for (const auto i : rates ? std::array{IMU_WX, IMU_WY, IMU_WZ}
-                            : std::array{IMU_X_ACC, IMU_Y_ACC, IMU_Z_ACC}) {
+  for (const auto i :
+       rates ? std::array{IMU_WX, IMU_WY, IMU_WZ} : std::array{IMU_X_ACC, IMU_Y_ACC, IMU_Z_ACC}) {
     imu.set(i, value);
   }
   return imu;
@@ -417,8 +418,8 @@ TEST_F(Observations, SentencesOfOneTimeAreJoined) {
     velocity.setMsg(rmc);
     auto stale = velocity;
     stale.timestamp = test::mrpt_stamp(kBegin + 6 * kMs);
-    const std::string path =
-        velocity_first ? log_with({&velocity, &position}) : log_with({&position, &velocity, &stale});
+    const std::string path = velocity_first ? log_with({&velocity, &position})
+                                            : log_with({&position, &velocity, &stale});
     RawlogSource source(path);
     const std::vector<GnssFix> fixes = all<GnssFix>(source);
     ASSERT_EQ(fixes.size(), 1U);

@@ -15,9 +15,9 @@
 #include <functional>
 #include <random>
 
+#include "foucault/rawlog/mrpt_convert.h"
 #include "foucault/rawlog/rawlog_source.h"
 #include "inflated_file.h"
-#include "mrpt_convert.h"
 #include "mrpt_log.h"
 #include "mrpt_records.h"
 #include "rawlog_stream.h"

@@ -94,7 +94,8 @@ class PositionMapping : public TableMapping {
 };
 
 /// More roles: sigma_north, sigma_east, sigma_down, or sigma_horizontal, sigma_vertical;
-/// velocity_north, velocity_east, velocity_down, or speed, bearing [deg]; sigma_velocity; quality.
+/// velocity_north, velocity_east, velocity_down, or speed, bearing [deg]; sigma_velocity; quality;
+/// satellites, hdop, correction_age [s].
 class GnssMapping : public PositionMapping {
  public:
   std::string sigma_unit = "m";            ///< of the columns of positions' sigmas

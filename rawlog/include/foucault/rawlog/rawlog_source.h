@@ -44,7 +44,9 @@ struct SourceCounts {
 ///
 /// CObservationIMU -> ImuIncrement. CObservationGPS -> GnssFix, from NovAtel BESTPOS (sigmas),
 /// TopCon PZS (covariance; also the velocity beside BESTPOS), else NMEA GGA (altitude + geoid
-/// separation; sigma from fix quality and HDOP, see nmea_sigma) with RMC or VTG. Label REFERENCE:
+/// separation; sigma assumed by fix quality and HDOP) with RMC or VTG, which may come in records of
+/// their own, else RMC alone (no height). Covariance and fix type of newer records (MRPT >=
+/// 2.11.12) count more. Rates and forces in records of their own are joined. Label REFERENCE:
 /// NovAtel INSPVAS -> ReferencePose of the IMU centre (NaN attitude or velocity: absent);
 /// CObservationRobotPose -> the same, its frame being East-North-Up at the first fix.
 /// CObservationOdometry with velocities -> WheelSpeed. The rest is skipped and counted by class.
@@ -90,15 +92,5 @@ class RawlogSource : public state::Source {
   class Impl;
   std::unique_ptr<Impl> impl_;
 };
-
-/// Standard deviation per axis of a position without one (NMEA GGA) [m]: horizontal (north and
-/// east, each) and vertical. An assumption: a table by fix quality at HDOP 1 (fixed 0.015, float
-/// 0.25, ppp 0.1, differential 0.7, single and unknown 1.7), times HDOP (at least 0.5; 1 where the
-/// receiver gives none); vertical is twice the horizontal.
-struct NmeaSigma {
-  double horizontal = 0;
-  double vertical = 0;
-};
-NmeaSigma nmea_sigma(FixQuality quality, std::optional<double> hdop);
 
 }  // namespace foucault::rawlog

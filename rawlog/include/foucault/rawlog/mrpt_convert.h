@@ -14,8 +14,9 @@
 #include "foucault/core/measurement.h"
 #include "foucault/imu/increments.h"
 
-/// Between MRPT's values and ours: the one place where stamps change their epoch and frames turn
-/// from forward-left-up to forward-right-down.
+/// Between MRPT's observations and our measurements: the one place where stamps change their epoch
+/// and frames turn from forward-left-up to forward-right-down. For programs that have one and want
+/// the other; they link mrpt::obs beside foucault::rawlog.
 namespace foucault::rawlog {
 
 /// MRPT counts 100 ns since 1601. None for MRPT's invalid stamp and outside the years 1950 to 2150.
