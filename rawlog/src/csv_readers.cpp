@@ -10,10 +10,12 @@
 
 #include "foucault/core/constants.h"
 #include "foucault/core/error.h"
+#include "foucault/core/median.h"
 #include "foucault/core/so3.h"
 #include "nmea_accuracy.h"
 #include "position_columns.h"
 #include "table_units.h"
+#include "unit_search.h"
 
 namespace foucault::rawlog {
 
@@ -65,8 +67,10 @@ void check_lines(const TableMapping& mapping, const std::string& section) {
 
 class ImuReader : public RecordReader {
  public:
-  ImuReader(const ImuMapping& mapping, const std::string& path)
-      : table_(open_mapped_table(path)),
+  /// The mapping's units are no longer `auto`.
+  ImuReader(const ImuMapping& mapping, const std::string& path, std::vector<std::string> notices)
+      : notices_(std::move(notices)),
+        table_(open_mapped_table(path)),
         columns_(mapping, table_, "imu",
                  joined({{"gyro_x", "gyro_y", "gyro_z", "accel_x", "accel_y", "accel_z",
                           "wheel_speed"}})),
@@ -81,6 +85,7 @@ class ImuReader : public RecordReader {
 
   const TextTable& table() const override { return table_; }
   int64_t without_fix() const override { return blank_; }
+  std::vector<std::string> notices() const override { return notices_; }
 
   std::optional<Record> next() override {
     while (ready_.empty()) {
@@ -163,6 +168,7 @@ class ImuReader : public RecordReader {
     ready_.push_back(std::move(record));
   }
 
+  std::vector<std::string> notices_;
   TextTable table_;
   Columns columns_;
   TimeColumn time_;
@@ -177,6 +183,71 @@ class ImuReader : public RecordReader {
   std::deque<Record> ready_;
   int64_t blank_ = 0;
 };
+
+/// Lengths of the forces of the first rows, read as m/s^2, and the time between rows [s].
+struct FirstForces {
+  std::vector<double> lengths;
+  double step = 0;
+};
+
+FirstForces first_forces(ImuMapping mapping, const std::string& path) {
+  constexpr size_t kEnough = 5000;
+  mapping.accel_unit = "m_s2";
+  mapping.gyro_unit = "rad_s";
+  ImuReader reader(mapping, path, {});
+  FirstForces first;
+  std::optional<int64_t> begin_ns;
+  int64_t end_ns = 0;
+  for (bool over = false; !over && first.lengths.size() < kEnough;) {
+    try {
+      const std::optional<Record> record = reader.next();
+      over = !record;
+      const auto* sample = over ? nullptr : std::get_if<imu::ImuSample>(&*record);
+      if (sample == nullptr || !sample->accel_b.allFinite()) continue;
+      first.lengths.push_back(sample->accel_b.norm());
+      if (!begin_ns) begin_ns = sample->t_ns;
+      end_ns = sample->t_ns;
+    } catch (const RowError&) {  // told when the table is read
+    }
+  }
+  if (first.lengths.size() > 1) {
+    first.step = seconds_between(*begin_ns, end_ns) / static_cast<double>(first.lengths.size() - 1);
+  }
+  return first;
+}
+
+struct FoundUnits {
+  ImuMapping mapping;
+  std::vector<std::string> notices;
+};
+
+/// With the units that are left to the data.
+FoundUnits with_units(const ImuMapping& mapping, const std::string& path) {
+  FoundUnits out{mapping, {}};
+  std::string& accel = out.mapping.accel_unit;
+  std::string& gyro = out.mapping.gyro_unit;
+  const bool found = accel == "auto";
+  if (found) {
+    const FirstForces first = first_forces(mapping, path);
+    accel = unit_by_gravity(first.lengths, first.step).value_or("m_s2");
+    if (accel != "m_s2") {
+      out.notices.push_back(
+          fmt::format("{}: gravity is {:.4g} in it, so that its accelerometer is read in {}; if "
+                      "that is wrong, give imu.accel_unit",
+                      path, median(first.lengths), accel));
+    }
+  }
+  if (gyro != "auto") return out;
+  const bool increments = unit_of(acceleration_units(), accel).increment;
+  gyro = increments ? "rad" : "rad_s";
+  if (increments) {
+    out.notices.push_back(
+        fmt::format("{}: beside increments of velocity its gyroscope is read as increments in rad; "
+                    "if that is wrong, give imu.gyro_unit",
+                    path));
+  }
+  return out;
+}
 
 // GNSS ------------------------------------------------------------------------------------------
 
@@ -466,7 +537,8 @@ std::optional<std::string> input_path(const MappingSource& source,
 }
 
 std::unique_ptr<RecordReader> make_imu_reader(const ImuMapping& mapping, const std::string& path) {
-  return std::make_unique<ImuReader>(mapping, path);
+  const FoundUnits found = with_units(mapping, path);
+  return std::make_unique<ImuReader>(found.mapping, path, found.notices);
 }
 
 std::unique_ptr<RecordReader> make_gnss_reader(const GnssMapping& mapping,

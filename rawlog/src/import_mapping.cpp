@@ -59,6 +59,12 @@ Eigen::Matrix3d axes_matrix(const std::vector<std::string>& axes) {
   return R;
 }
 
+std::vector<std::string> or_auto(const Units& units) {
+  std::vector<std::string> names = names_of(units);
+  names.insert(names.begin(), "auto");
+  return names;
+}
+
 }  // namespace
 
 void TimeMapping::fields(ConfigFields& f) {
@@ -87,10 +93,12 @@ void TableMapping::fields(ConfigFields& f) {
 
 void ImuMapping::fields(ConfigFields& f) {
   TableMapping::fields(f);
-  f.text("gyro_unit", gyro_unit, names_of(rate_units()),
-         "unit of the angular rates; rad and deg: angle increments since the row before");
-  f.text("accel_unit", accel_unit, names_of(acceleration_units()),
-         "unit of the specific forces; m_s: velocity increments since the row before");
+  f.text("gyro_unit", gyro_unit, or_auto(rate_units()),
+         "unit of the angular rates; rad and deg: angle increments since the row before; auto: "
+         "rad_s, or rad beside velocity increments");
+  f.text("accel_unit", accel_unit, or_auto(acceleration_units()),
+         "unit of the specific forces; m_s: velocity increments since the row before; auto: by "
+         "gravity");
   f.number("gyro_scale", gyro_scale, kPositive, "of raw counts: value times this is in gyro_unit");
   f.number("accel_scale", accel_scale, kPositive,
            "of raw counts: value times this is in accel_unit");

@@ -330,6 +330,24 @@ TEST_F(Dialects, IncrementsOfAnglesBesideForces) {
   EXPECT_TRUE(increments[1].dvel_b.isApprox(0.01 * Eigen::Vector3d(0.25, 0.5, -9.5), 1e-9));
 }
 
+TEST_F(Dialects, UnitsOfForcesAreFoundByGravity) {
+  const auto with = [&](const std::string& force) {
+    imu(replaced(kImuRows, "0.25,0.5,-9.5", force));
+    const ImportSummary summary = run();
+    return summary.imu.notices.empty() ? "" : summary.imu.notices[0];
+  };
+  EXPECT_EQ(with("0.25,0.5,-9.5"), "");
+  EXPECT_THAT(with("0.01,0.02,1.01"), HasSubstr("read in g;"));
+  EXPECT_NEAR(all<ImuIncrement>().at(0).dvel_b.z(), 0.0101 * kStandardGravity, 1e-9);
+  EXPECT_THAT(with("3,4,998"), HasSubstr("read in mg;"));
+  EXPECT_THAT(with("3,4,978"), HasSubstr("read in cm_s2;"));
+  EXPECT_EQ(with("1,2,3"), "");  // no gravity
+  // Increments over 0.01 s: the rates are, too.
+  EXPECT_THAT(with("0.001,0.002,-0.0975"), HasSubstr("read in m_s;"));
+  EXPECT_TRUE(all<ImuIncrement>().at(1).dtheta_b.isApprox(Eigen::Vector3d(0.5, -1.5, 2), 1e-9));
+  EXPECT_NEAR(all<ImuIncrement>().at(1).dvel_b.z(), -0.0975, 1e-9);
+}
+
 TEST_F(Dialects, IncrementsNeedStampsOfTheirOwn) {
   imu(after_header(kImuRows, "100.00,1,2,3,4,5,6\n"));
   run();  // rates come in bursts

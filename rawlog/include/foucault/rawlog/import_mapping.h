@@ -48,8 +48,10 @@ class TableMapping : public Configurable {
 /// Roles: time, date, week, gyro_x, gyro_y, gyro_z, accel_x, accel_y, accel_z, wheel_speed.
 class ImuMapping : public TableMapping {
  public:
-  std::string gyro_unit = "rad_s";  ///< rad_s | deg_s, or of increments rad | deg
-  std::string accel_unit = "m_s2";  ///< m_s2 | g (9.80665 m/s^2) | mg | cm_s2, or increments m_s
+  /// auto (rad_s; rad beside increments of velocity) | rad_s | deg_s, or of increments rad | deg
+  std::string gyro_unit = "auto";
+  /// auto (by gravity, else m_s2) | m_s2 | g (9.80665 m/s^2) | mg | cm_s2, or increments m_s
+  std::string accel_unit = "auto";
   double gyro_scale = 1;            ///< value in the column times this is in gyro_unit
   double accel_scale = 1;
   std::string wheel_speed_unit = "m_s";
