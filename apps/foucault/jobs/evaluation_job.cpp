@@ -165,8 +165,7 @@ std::vector<EvaluationCase> cross(const std::vector<std::string>& logs,
   std::vector<EvaluationCase> cases;
   for (std::size_t i = 0; i < logs.size(); ++i) {
     for (const std::string& method : methods) {
-      const Settings of_log = settings_for(logs[i], settings);
-      cases.push_back({logs[i], names[i], of_log.imu.preset, method, "", of_log});
+      cases.push_back({logs[i], names[i], settings.imu.preset, method, "", settings});
     }
   }
   return cases;
@@ -200,12 +199,27 @@ std::vector<evaluation::ExperimentRun> experiment_runs(const EvaluationCase& eva
   return runs;
 }
 
+namespace {
+
+/// With what the logs say, once the settings are known to be right.
+std::vector<EvaluationCase> with_notes(std::vector<EvaluationCase> cases) {
+  for (const EvaluationCase& c : cases) experiment_runs(c);
+  for (EvaluationCase& c : cases) {
+    c.settings = settings_for(c.log, c.settings);
+    if (c.imu == imu::ImuOptions::kAsRecorded) c.imu = c.settings.imu.preset;
+  }
+  return cases;
+}
+
+}  // namespace
+
 void check_logs(const std::vector<std::string>& logs, const Settings& settings) {
   for (const std::string& log : logs) open_log(log, settings);
 }
 
-Evaluation evaluate_what_is_there(const std::vector<EvaluationCase>& cases, int threads,
+Evaluation evaluate_what_is_there(const std::vector<EvaluationCase>& given, int threads,
                                   Console& console) {
+  const std::vector<EvaluationCase> cases = with_notes(given);
   LogNotices notices;
   std::vector<evaluation::ExperimentRun> runs;
   for (const EvaluationCase& c : cases) {
