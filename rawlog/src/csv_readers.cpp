@@ -536,6 +536,27 @@ std::optional<std::string> input_path(const MappingSource& source,
   return (folder / file).string();  // an absolute `file` stays what it is
 }
 
+ImportMapping add_tables(const MappingSource& source, const std::optional<std::string>& imu,
+                         const std::optional<std::string>& reference, ImportInputs& inputs) {
+  if (source.mapping.empty() && (imu || reference)) {
+    throw UsageError("--imu and --reference need --mapping, which names their columns");
+  }
+  ImportMapping mapping = source.mapping.empty() ? ImportMapping{} : load_mapping(source);
+  const auto imu_path = input_path(source, imu, mapping.imu.file);
+  const auto reference_path = input_path(source, reference, mapping.reference.file);
+  naming_mapping(source.mapping, [&] {
+    if (imu_path) inputs.imu = make_imu_reader(mapping.imu, *imu_path);
+    if (reference_path) {
+      inputs.reference = make_reference_reader(mapping.reference, *reference_path);
+    }
+    inputs.mounting = mapping.imu.mounting();
+    inputs.lever_arm_v = mapping.lever_arm();
+  });
+  inputs.sensor = mapping.imu.sensor;
+  inputs.mapping = source.mapping;
+  return mapping;
+}
+
 std::unique_ptr<RecordReader> make_imu_reader(const ImuMapping& mapping, const std::string& path) {
   const FoundUnits found = with_units(mapping, path);
   return std::make_unique<ImuReader>(found.mapping, path, found.notices);

@@ -179,24 +179,12 @@ int64_t NmeaReader::first_stamp(const GnssMapping& mapping, const std::string& p
 
 ImportSummary import_nmea(const NmeaImport& options) {
   const MappingSource source{options.mapping, options.data_dir};
-  const ImportMapping mapping = options.mapping.empty() ? ImportMapping{} : load_mapping(source);
-  if (options.mapping.empty() && (options.imu || options.reference)) {
-    throw UsageError("--imu and --reference need --mapping, which names their columns");
-  }
-  const auto imu = input_path(source, options.imu, mapping.imu.file);
-  const auto gnss = input_path(source, options.gnss, mapping.gnss.file);
-  const auto reference = input_path(source, options.reference, mapping.reference.file);
-  if (!gnss) throw UsageError("no NMEA file: give --gnss, or gnss.file in the mapping");
   ImportInputs inputs;
-  naming_mapping(options.mapping, [&] {
-    if (imu) inputs.imu = make_imu_reader(mapping.imu, *imu);
-    if (reference) inputs.reference = make_reference_reader(mapping.reference, *reference);
-    inputs.mounting = mapping.imu.mounting();
-  });
+  const ImportMapping mapping = add_tables(source, options.imu, options.reference, inputs);
+  const auto gnss = input_path(source, options.gnss, mapping.gnss.file);
+  if (!gnss) throw UsageError("no NMEA file: give --gnss, or gnss.file in the mapping");
   inputs.gnss = std::make_unique<NmeaReader>(mapping.gnss, *gnss);
-  inputs.mapping = options.mapping;
-  inputs.lever_arm_v = options.lever_arm ? options.lever_arm : mapping.lever_arm();
-  inputs.sensor = mapping.imu.sensor;
+  if (options.lever_arm) inputs.lever_arm_v = options.lever_arm;
   return run_import(options, std::move(inputs));
 }
 

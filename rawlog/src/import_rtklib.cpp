@@ -14,6 +14,7 @@
 #include "foucault/core/time.h"
 #include "foucault/geodesy/local_frame.h"
 #include "foucault/geodesy/wgs84.h"
+#include "pos_reader.h"
 
 namespace foucault::rawlog {
 
@@ -335,15 +336,18 @@ class PosReader : public rawlog::RecordReader {
   }
 
   /// Along the axes of the file: from columns like sdn, sde, sdu and, if there, sdne, sdeu, sdun.
-  /// These are rounded: where small ones do not fit together, sigmas are that much larger.
+  /// These are rounded, and RTKLIB loses digits: an ambiguity-fixed covariance is what remains of a
+  /// variance of (30 m)^2, a sigma among it may be zero. Where small ones do not fit together,
+  /// sigmas are that much larger.
   Eigen::Matrix3d covariance(const Row& row, const std::string& prefix) const {
     constexpr double kRounding = 1e-4;
-    Eigen::Vector3d sigma;
-    for (int i = 0; i < 3; ++i) sigma[i] = row.sigma(column(prefix + header_.layout->axes[i]));
-    Eigen::Matrix3d covariance = sigma.cwiseAbs2().asDiagonal();
+    constexpr double kLostDigits = 3e-3;
     std::array<std::optional<size_t>, 3> common;
     for (int i = 0; i < 3; ++i) common[i] = common_column(prefix, i, (i + 1) % 3);
-    if (!common[0] || !common[1] || !common[2]) return covariance;
+    const bool full = common[0] && common[1] && common[2];
+    const Eigen::Vector3d sigma = sigmas(row, prefix, full);
+    Eigen::Matrix3d covariance = sigma.cwiseAbs2().asDiagonal();
+    if (!full) return covariance;
     for (int i = 0; i < 3; ++i) {
       const int j = (i + 1) % 3;
       covariance(i, j) = covariance(j, i) = signed_square(row.number(*common[i]));
@@ -351,7 +355,19 @@ class PosReader : public rawlog::RecordReader {
     if (is_positive(covariance)) return covariance;
     covariance.diagonal() = (sigma.array() + kRounding).square();
     if (is_positive(covariance)) return covariance;
+    covariance.diagonal() = sigma.array().square() + kLostDigits * kLostDigits;
+    if (is_positive(covariance)) return covariance;
     row.fail("the covariance is not positive; correct or remove the row");
+  }
+
+  /// One or two may be zero beside what they have in common.
+  Eigen::Vector3d sigmas(const Row& row, const std::string& prefix, bool full) const {
+    Eigen::Vector3d sigma = along_axes(row, prefix);
+    for (int i = 0; i < 3; ++i) {
+      const bool may_be_zero = full && sigma.maxCoeff() > 0 && sigma[i] == 0;
+      if (!may_be_zero) sigma[i] = row.sigma(column(prefix + header_.layout->axes[i]));
+    }
+    return sigma;
   }
 
   Geodetic position(const Row& row) const {
@@ -401,9 +417,20 @@ class PosReader : public rawlog::RecordReader {
                                     ? Eigen::Matrix3d(velocity_sigma_->cwiseAbs2().asDiagonal())
                                     : R * covariance(row, "sdv") * R.transpose();
     }
+    fix.details = details(row);
     fix.t_ns = stamp(row);
     order_.check(row, fix.t_ns);
     return fix;
+  }
+
+  /// Zero: not told.
+  FixDetails details(const Row& row) const {
+    FixDetails details;
+    const double satellites = has("ns") ? row.number(column("ns")) : 0;
+    const double age = has("age") ? row.number(column("age")) : 0;
+    if (satellites > 0 && satellites < 256) details.satellites = static_cast<int>(satellites);
+    if (age > 0) details.correction_age = age;
+    return details;
   }
 
   TextTable table_;
@@ -420,26 +447,22 @@ class PosReader : public rawlog::RecordReader {
 
 }  // namespace
 
+std::unique_ptr<RecordReader> make_pos_reader(const GnssMapping& mapping, const std::string& path) {
+  return std::make_unique<PosReader>(mapping, path);
+}
+
 ImportSummary import_rtklib(const RtklibImport& options) {
   const rawlog::MappingSource source{options.mapping, options.data_dir};
-  const ImportMapping mapping = rawlog::load_mapping(source);
-  const auto imu = rawlog::input_path(source, options.imu, mapping.imu.file);
-  const auto gnss = rawlog::input_path(source, options.gnss, mapping.gnss.file);
-  const auto reference = rawlog::input_path(source, options.reference, mapping.reference.file);
+  ImportInputs inputs;
+  const ImportMapping mapping = add_tables(source, options.imu, options.reference, inputs);
+  const auto gnss = input_path(source, options.gnss, mapping.gnss.file);
+  const bool imu = inputs.imu != nullptr;
   if (!imu || !gnss) {
     throw UsageError(fmt::format("no {} file: give --{}, or {}.file in '{}'", imu ? ".pos" : "IMU",
                                  imu ? "gnss" : "imu", imu ? "gnss" : "imu", options.mapping));
   }
-  rawlog::ImportInputs inputs;
-  rawlog::naming_mapping(options.mapping, [&] {
-    inputs.imu = rawlog::make_imu_reader(mapping.imu, *imu);
-    inputs.gnss = std::make_unique<PosReader>(mapping.gnss, *gnss);
-    if (reference) inputs.reference = rawlog::make_reference_reader(mapping.reference, *reference);
-    inputs.mounting = mapping.imu.mounting();
-  });
-  inputs.mapping = options.mapping;
-  inputs.lever_arm_v = options.lever_arm ? options.lever_arm : mapping.lever_arm();
-  inputs.sensor = mapping.imu.sensor;
+  naming_mapping(options.mapping, [&] { inputs.gnss = make_pos_reader(mapping.gnss, *gnss); });
+  if (options.lever_arm) inputs.lever_arm_v = options.lever_arm;
   return rawlog::run_import(options, std::move(inputs));
 }
 

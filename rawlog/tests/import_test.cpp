@@ -732,6 +732,20 @@ TEST_F(RtklibFormats, RoundedCovariancesAreWidened) {
               HasSubstr("covariance is not positive"));
 }
 
+/// As rnx2rtkp 2.4.3 wrote it of a combined solution: what is left of (30 m)^2.
+TEST_F(RtklibFormats, DigitsThatRtklibLost) {
+  const std::string header =
+      "%  GPST latitude(deg) longitude(deg) height(m) Q ns sdn(m) sde(m) sdu(m) sdne(m) sdeu(m) "
+      "sdun(m)\n2244 36559.00 48.780243899 9.171507210 320.0005 1 7 ";
+  const GnssFix fix = fix_of(header + "0.0032 0.0000 0.0087 -0.0025 -0.0029 -0.0028\n");
+  const Eigen::Vector3d sigma = fix.position_covariance.diagonal().cwiseSqrt();
+  EXPECT_LT((sigma - Eigen::Vector3d(4.4e-3, 3e-3, 9.2e-3)).cwiseAbs().maxCoeff(), 1e-4);
+  EXPECT_NEAR(fix.position_covariance(0, 1), -0.0025 * 0.0025, 1e-9);
+  scratch_.text_file("a.pos", header + "0 0 0 0 0 0\n");
+  EXPECT_THAT(error_of<DataError>([&] { import_rtklib(rtklib_); }),
+              HasSubstr("must be greater than zero"));
+}
+
 TEST_F(RtklibFormats, PlacesAndWeeksThatDoNotExist) {
   const std::string ecef = "%  GPST x-ecef(m) y-ecef(m) z-ecef(m) Q ns sdx(m) sdy(m) sdz(m)\n";
   std::string utc = kRtklibDegreesHeader;

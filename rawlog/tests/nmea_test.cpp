@@ -33,9 +33,6 @@ class Nmea : public ::testing::Test {
   Nmea() {
     options_.gnss = scratch_.path("a.nmea");
     options_.out = scratch_.path("out.rawlog");
-    scratch_.text_file("imu.csv",  // 2000 to 2100
-                       "946684800,0,0,0,0,0,-9.8\n946684801,0,0,0,0,0,-9.8\n"
-                       "4102444800,0,0,0,0,0,-9.8\n4102444801,0,0,0,0,0,-9.8\n");
     mapping("");
   }
 
@@ -61,14 +58,8 @@ class Nmea : public ::testing::Test {
     return what;
   }
 
-  /// With an IMU that is there at all times.
   void mapping(const std::string& more) {
-    options_.mapping =
-        scratch_.text_file("mapping.yaml",
-                           "imu:\n  file: imu.csv\n  header: false\n  columns: {time: 1, gyro_x: "
-                           "2, gyro_y: 3, gyro_z: "
-                           "4, accel_x: 5, accel_y: 6, accel_z: 7}\n  time: {system: unix}\n" +
-                               more);
+    options_.mapping = test::imu_at_all_times(scratch_, more);
   }
 
   static std::string gga(const std::string& time, int quality = 1) {

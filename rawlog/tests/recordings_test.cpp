@@ -1,8 +1,6 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-
 #include "foucault/core/constants.h"
 #include "foucault/core/time.h"
 #include "foucault/rawlog/import_csv.h"
@@ -17,12 +15,8 @@
 namespace foucault::rawlog {
 namespace {
 
+using test::data_dir;
 using test::Scratch;
-
-std::string data_dir() {
-  const char* set = std::getenv("FOUCAULT_DATA_DIR");
-  return set != nullptr ? set : std::string(FOUCAULT_SOURCE_DIR) + "/../shared/data";
-}
 
 class Recordings : public ::testing::Test {
  protected:

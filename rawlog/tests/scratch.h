@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -46,6 +47,24 @@ class Scratch {
  private:
   std::filesystem::path folder_;
 };
+
+/// Where the recordings lie: $FOUCAULT_DATA_DIR, else beside the source.
+inline std::string data_dir() {
+  const char* set = std::getenv("FOUCAULT_DATA_DIR");
+  return set != nullptr ? set : std::string(FOUCAULT_SOURCE_DIR) + "/../shared/data";
+}
+
+/// A mapping with an IMU that is there from 2000 to 2100, and what `more` says.
+inline std::string imu_at_all_times(const Scratch& scratch, const std::string& more = "") {
+  scratch.text_file("imu.csv",
+                    "946684800,0,0,0,0,0,-9.8\n946684801,0,0,0,0,0,-9.8\n"
+                    "4102444800,0,0,0,0,0,-9.8\n4102444801,0,0,0,0,0,-9.8\n");
+  return scratch.text_file("mapping.yaml",
+                           "imu:\n  file: imu.csv\n  header: false\n  columns: {time: 1, gyro_x: "
+                           "2, gyro_y: 3, gyro_z: 4, accel_x: 5, accel_y: 6, accel_z: 7}\n  time: "
+                           "{system: unix}\n" +
+                               more);
+}
 
 inline std::string contents(const std::string& path) {
   std::ifstream file(path, std::ios::binary);

@@ -16,6 +16,8 @@ std::function<void(Call&)> declare_import_csv(CLI::App& app);
 std::function<void(Call&)> declare_import_nmea(CLI::App& app);
 std::function<void(Call&)> declare_import_ulog(CLI::App& app);
 std::function<void(Call&)> declare_import_bag(CLI::App& app);
+std::function<void(Call&)> declare_import_ubx(CLI::App& app);
+std::function<void(Call&)> declare_import_rinex(CLI::App& app);
 
 inline constexpr const char* kLeverArmHelp =
     "IMU to antenna along the vehicle's forward, right, down [m]: X,Y,Z";
