@@ -111,11 +111,10 @@ std::optional<RosMessage> McapFile::next_in_file() {
     notice_ = "it has no end, the recording was cut off; all messages up to there were read";
     return std::nullopt;
   }
-  if (is_op(head.op, McapOp::data_end)) crc_ = crc;  // it is of what stands before
   const bool needed = is_needed(head.op) && head.size <= kLargestRecord;
-  if (needed ? read(head.size) : skip(head.size)) {
-    return needed ? take(head.op, bytes_of(record_)) : std::nullopt;
-  }
+  const bool whole = needed ? read(head.size) : skip(head.size);
+  if (is_op(head.op, McapOp::data_end)) crc_ = crc;  // it is of what stands before
+  if (whole) return needed ? take(head.op, bytes_of(record_)) : std::nullopt;
   over_ = true;
   file_.fail(
       "a record that goes on behind the end of the file, which is cut off or damaged here; get the "
