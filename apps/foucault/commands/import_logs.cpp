@@ -1,0 +1,64 @@
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <optional>
+
+#include "arguments.h"
+#include "foucault/rawlog/import_bag.h"
+#include "foucault/rawlog/import_ulog.h"
+#include "import_formats.h"
+
+/// Logs that hold all sensors.
+namespace foucault::app {
+
+std::function<void(Call&)> declare_import_ulog(CLI::App& app) {
+  struct Options {
+    rawlog::UlogImport import;
+    std::optional<std::string> lever_arm;
+  };
+  const auto o = std::make_shared<Options>();
+  app.add_option("log", o->import.log, "ULog of PX4 (.ulg, or .gz)")->required();
+  app.add_option("--lever-arm", o->lever_arm,
+                 std::string(kLeverArmHelp) + "; without it EKF2_GPS_POS of the log");
+  add_import_options(app, o->import);
+  return [o](Call& call) {
+    if (o->lever_arm) o->import.lever_arm = parse_vector3("--lever-arm", *o->lever_arm);
+    o->import.progress = call.console.progress_of("importing");
+    report_import(call.console, rawlog::import_ulog(o->import), o->import.out);
+  };
+}
+
+std::function<void(Call&)> declare_import_bag(CLI::App& app) {
+  struct Options {
+    rawlog::BagImport import;
+    std::string lever_arm;
+    std::optional<std::string> gnss_sigma, velocity_sigma;
+  };
+  const auto o = std::make_shared<Options>();
+  app.add_option("bag", o->import.bag, "Bag of ROS 1 (.bag)")->required();
+  app.add_option("--imu-topic", o->import.imu_topic,
+                 "Of sensor_msgs/Imu; needed if there are several");
+  app.add_option("--gnss-topic", o->import.gnss_topic,
+                 "Of sensor_msgs/NavSatFix; needed if there are several");
+  app.add_option("--velocity-topic", o->import.velocity_topic,
+                 "Of geometry_msgs/TwistStamped, east, north, up, at the stamps of the fixes");
+  app.add_option("--imu-axes", o->import.imu_axes,
+                 "Sensor axes that look forward, right, down; without it x,-y,-z (REP 103)")
+      ->delimiter(',');
+  app.add_option("--gnss-sigma", o->gnss_sigma,
+                 "North, east, down [m], where the messages tell no covariance: X,Y,Z");
+  app.add_option("--velocity-sigma", o->velocity_sigma, "The same of velocities [m/s]");
+  app.add_option("--lever-arm", o->lever_arm, kLeverArmHelp)->required();
+  add_import_options(app, o->import);
+  return [o](Call& call) {
+    rawlog::BagImport& import = o->import;
+    import.lever_arm = parse_vector3("--lever-arm", o->lever_arm);
+    if (o->gnss_sigma) import.gnss_sigma = parse_vector3("--gnss-sigma", *o->gnss_sigma);
+    if (o->velocity_sigma) {
+      import.velocity_sigma = parse_vector3("--velocity-sigma", *o->velocity_sigma);
+    }
+    import.progress = call.console.progress_of("importing");
+    report_import(call.console, rawlog::import_bag(import), import.out);
+  };
+}
+
+}  // namespace foucault::app

@@ -1,0 +1,91 @@
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <optional>
+
+#include "arguments.h"
+#include "foucault/rawlog/import_csv.h"
+#include "foucault/rawlog/import_i2nav.h"
+#include "foucault/rawlog/import_nmea.h"
+#include "foucault/rawlog/import_rtklib.h"
+#include "import_formats.h"
+
+/// Tables and texts, one file a sensor.
+namespace foucault::app {
+namespace {
+
+std::string mapping_help() {
+  rawlog::ImportMapping mapping;
+  return describe_config(mapping);
+}
+
+/// `rtklib`, `csv` and `nmea` take the same options.
+template <class Import>
+std::function<void(Call&)> declare_mapped(CLI::App& app,
+                                          rawlog::ImportSummary (*import)(const Import&),
+                                          const char* gnss_help, bool needs_mapping = true) {
+  struct Options {
+    Import import;
+    std::optional<std::string> lever_arm;
+  };
+  const auto o = std::make_shared<Options>();
+  app.add_option("--mapping", o->import.mapping,
+                 "YAML that names columns, units, axes, clocks and the lever arm")
+      ->required(needs_mapping);
+  app.add_option("--data", o->import.data_dir,
+                 "Folder of the files that the mapping names; without it the mapping's own");
+  app.add_option("--imu", o->import.imu, "IMU table, instead of the mapping's");
+  app.add_option("--gnss", o->import.gnss, gnss_help);
+  app.add_option("--reference", o->import.reference, "Reference table, instead of the mapping's");
+  app.add_option("--lever-arm", o->lever_arm, kLeverArmHelp);
+  add_import_options(app, o->import);
+  add_help_text(app, "--help-mapping", "List every key of a mapping, with default and meaning",
+                mapping_help);
+  return [o, import](Call& call) {
+    if (o->lever_arm) o->import.lever_arm = parse_vector3("--lever-arm", *o->lever_arm);
+    o->import.progress = call.console.progress_of("importing");
+    report_import(call.console, import(o->import), o->import.out);
+  };
+}
+
+}  // namespace
+
+std::function<void(Call&)> declare_import_i2nav(CLI::App& app) {
+  struct Options {
+    rawlog::I2navImport import;
+    std::string lever_arm;
+  };
+  const auto o = std::make_shared<Options>();
+  app.add_option("--imu", o->import.imu,
+                 "Increments: sow, dtheta x y z [rad], dvel x y z [m/s] (.txt or .gz)")
+      ->required();
+  app.add_option("--gnss", o->import.gnss,
+                 "Fixes: sow, latitude, longitude [deg], height [m], sigma north, east, down [m]")
+      ->required();
+  app.add_option("--reference", o->import.reference, "Reference trajectory (.nav)");
+  app.add_option("--gps-week", o->import.gps_week,
+                 "GPS week of the first row; without it the reference's");
+  app.add_option("--lever-arm", o->lever_arm, kLeverArmHelp)->required();
+  add_import_options(app, o->import);
+  return [o](Call& call) {
+    o->import.lever_arm = parse_vector3("--lever-arm", o->lever_arm);
+    o->import.progress = call.console.progress_of("importing");
+    report_import(call.console, rawlog::import_i2nav(o->import), o->import.out);
+  };
+}
+
+std::function<void(Call&)> declare_import_rtklib(CLI::App& app) {
+  return declare_mapped<rawlog::RtklibImport>(app, rawlog::import_rtklib,
+                                              "RTKLIB's .pos, instead of the mapping's");
+}
+
+std::function<void(Call&)> declare_import_csv(CLI::App& app) {
+  return declare_mapped<rawlog::CsvImport>(app, rawlog::import_csv,
+                                           "GNSS table, instead of the mapping's");
+}
+
+std::function<void(Call&)> declare_import_nmea(CLI::App& app) {
+  return declare_mapped<rawlog::NmeaImport>(app, rawlog::import_nmea,
+                                            "NMEA sentences, instead of the mapping's", false);
+}
+
+}  // namespace foucault::app
