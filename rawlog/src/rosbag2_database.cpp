@@ -12,6 +12,9 @@ namespace foucault::rawlog {
 
 namespace {
 
+constexpr const char* kSqliteRemedy =
+    "get a whole copy, or save what is left by: sqlite3 FILE .recover | sqlite3 NEW.db3";
+
 /// A path in a name of SQLite's, where some signs have a meaning.
 std::string sqlite_uri(const std::string& path, bool immutable) {
   std::string uri = "file:";
@@ -78,8 +81,8 @@ void Rosbag2Database::open(const std::string& path) {
 }
 
 void Rosbag2Database::fail_to_open() const {
-  throw DataError(fmt::format("'{}' cannot be read as a recording of rosbag 2: {}; check the file",
-                              named_, sqlite3_errmsg(database_.get())));
+  throw DataError(fmt::format("'{}' cannot be read as a recording of rosbag 2: {}; {}", named_,
+                              sqlite3_errmsg(database_.get()), kSqliteRemedy));
 }
 
 Rosbag2Database::Statement Rosbag2Database::prepare(const std::string& sql) const {
@@ -94,8 +97,8 @@ bool Rosbag2Database::step(const Statement& statement) const {
   const int result = sqlite3_step(statement.get());
   if (result == SQLITE_ROW) return true;
   if (result == SQLITE_DONE) return false;
-  fail(fmt::format("what follows cannot be read: {}; get a whole copy",
-                   sqlite3_errmsg(database_.get())));
+  fail(fmt::format("what follows cannot be read: {}; {}", sqlite3_errmsg(database_.get()),
+                   kSqliteRemedy));
 }
 
 bool Rosbag2Database::has_table(const char* name) const {
