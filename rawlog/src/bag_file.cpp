@@ -1,75 +1,22 @@
 #include "bag_file.h"
 
-#include <bzlib.h>
 #include <fmt/format.h>
-#include <lz4frame.h>
 
 #include <algorithm>
 #include <string_view>
 
 #include "foucault/core/time.h"
+#include "inflate_block.h"
 #include "record_cursor.h"
 
 namespace foucault::rawlog {
 
 namespace {
 
-constexpr std::string_view kMagic = "#ROSBAG V2.0\n";
-constexpr uint32_t kLargestChunk = 1U << 28;  ///< inflated [bytes]; rosbag makes chunks of 768 kB
-constexpr size_t kPiece = 1U << 20;
-
 /// Of the header field `op`.
-enum class Op : uint8_t { message = 2, chunk = 5, connection = 7 };
+enum class BagOp : uint8_t { message = 2, bag = 3, chunk = 5, connection = 7 };
 
 std::string text_of(Bytes bytes) { return {bytes.begin, bytes.end}; }
-
-/// Room for another piece of at most `size` bytes in all.
-void grow(std::vector<unsigned char>& bytes, size_t filled, size_t size) {
-  if (filled == bytes.size()) bytes.resize(std::min(size, bytes.size() + kPiece));
-}
-
-/// Fills `out` with up to `size` bytes. False if they are not to be had.
-bool inflate_bz2(std::vector<unsigned char>& in, size_t size, std::vector<unsigned char>& out) {
-  bz_stream stream{};
-  if (BZ2_bzDecompressInit(&stream, 0, 0) != BZ_OK) return false;
-  stream.next_in = reinterpret_cast<char*>(in.data());
-  stream.avail_in = static_cast<unsigned>(in.size());
-  out.clear();
-  size_t filled = 0;
-  int result = BZ_OK;
-  while (result == BZ_OK && filled < size) {
-    grow(out, filled, size);
-    const auto room = static_cast<unsigned>(out.size() - filled);
-    stream.next_out = reinterpret_cast<char*>(out.data() + filled);
-    stream.avail_out = room;
-    result = BZ2_bzDecompress(&stream);
-    if (stream.avail_out == room && stream.avail_in == 0) break;
-    filled += room - stream.avail_out;
-  }
-  BZ2_bzDecompressEnd(&stream);
-  return filled == size;
-}
-
-bool inflate_lz4(const std::vector<unsigned char>& in, size_t size,
-                 std::vector<unsigned char>& out) {
-  LZ4F_dctx* context = nullptr;
-  if (LZ4F_isError(LZ4F_createDecompressionContext(&context, LZ4F_VERSION)) != 0) return false;
-  out.clear();
-  size_t filled = 0;
-  size_t used = 0;
-  while (filled < size && used < in.size()) {
-    grow(out, filled, size);
-    size_t room = out.size() - filled;
-    size_t left = in.size() - used;
-    const size_t result =
-        LZ4F_decompress(context, out.data() + filled, &room, in.data() + used, &left, nullptr);
-    if (LZ4F_isError(result) != 0 || (room == 0 && left == 0)) break;
-    filled += room;
-    used += left;
-  }
-  LZ4F_freeDecompressionContext(context);
-  return filled == size;
-}
 
 /// A part of a record: its length, then its bytes.
 Bytes part_of(RecordCursor& cursor) {
@@ -80,7 +27,7 @@ Bytes part_of(RecordCursor& cursor) {
 
 }  // namespace
 
-BagFile::BagFile(const std::string& path) : file_(path) {
+BagFile::BagFile(const std::string& path, const std::string& named) : file_(path, named) {
   const bool whole = file_.read(kMagic.size(), header_);
   if (whole && std::equal(kMagic.begin(), kMagic.end(), header_.begin())) return;
   throw DataError(
@@ -89,18 +36,18 @@ BagFile::BagFile(const std::string& path) : file_(path) {
                   file_.place(0)));
 }
 
-std::optional<BagMessage> BagFile::next() {
+std::optional<RosMessage> BagFile::next() {
   try {
     while (true) {
       if (left_.size() > 0) {
-        if (std::optional<BagMessage> message = next_in_chunk()) return message;
+        if (std::optional<RosMessage> message = next_in_chunk()) return message;
         continue;
       }
       Header header;
       if (!read_record(header)) return std::nullopt;
-      if (number<uint8_t>(header, "op") == static_cast<uint8_t>(Op::chunk)) {
+      if (number<uint8_t>(header, "op") == static_cast<uint8_t>(BagOp::chunk)) {
         open_chunk(header);
-      } else if (std::optional<BagMessage> message = message_of(header, bytes_of(data_))) {
+      } else if (std::optional<RosMessage> message = message_of(header, bytes_of(data_))) {
         return message;
       }
     }
@@ -150,15 +97,16 @@ T BagFile::number(const Header& header, const std::string& key) const {
 }
 
 /// None of other records.
-std::optional<BagMessage> BagFile::message_of(const Header& header, Bytes data) {
+std::optional<RosMessage> BagFile::message_of(const Header& header, Bytes data) {
   const auto op = number<uint8_t>(header, "op");
-  if (op == static_cast<uint8_t>(Op::connection)) connect(header, data);
-  if (op != static_cast<uint8_t>(Op::message)) return std::nullopt;
+  if (op == static_cast<uint8_t>(BagOp::connection)) connect(header, data);
+  if (op != static_cast<uint8_t>(BagOp::message)) return std::nullopt;
+  const auto topic = number<uint32_t>(header, "conn");
+  if (!is_selected(topic)) return std::nullopt;
   const auto time = number<uint64_t>(header, "time");
   const auto seconds = static_cast<int64_t>(time & 0xFFFFFFFFU);
   const auto nanoseconds = static_cast<int64_t>(time >> 32U);
-  return BagMessage{number<uint32_t>(header, "conn"), seconds * kNanosecondsPerSecond + nanoseconds,
-                    data};
+  return RosMessage{topic, seconds * kNanosecondsPerSecond + nanoseconds, data};
 }
 
 void BagFile::connect(const Header& header, Bytes data) {
@@ -170,33 +118,29 @@ void BagFile::connect(const Header& header, Bytes data) {
   if (type == about.end() || definition == about.end()) {
     file_.fail("a connection without a message definition; the bag is damaged here");
   }
-  connections_[number<uint32_t>(header, "conn")] = {text_of(topic->second), text_of(type->second),
-                                                    text_of(definition->second)};
+  topics_[number<uint32_t>(header, "conn")] = {
+      text_of(topic->second),
+      {text_of(type->second), text_of(definition->second), RosEncoding::ros1},
+      {}};
 }
 
 void BagFile::open_chunk(const Header& header) {
   const auto size = number<uint32_t>(header, "size");
   const auto found = header.find("compression");
   const std::string compression = found == header.end() ? "" : text_of(found->second);
-  bool whole = size <= kLargestChunk;
-  if (compression == "none") {
-    chunk_.swap(data_);
-  } else if (compression == "bz2") {
-    whole = whole && inflate_bz2(data_, size, chunk_);
-  } else if (compression == "lz4") {
-    whole = whole && inflate_lz4(data_, size, chunk_);
-  } else {
+  if (!is_compression(compression)) {
     file_.fail(
         "a chunk that is compressed by something else than bz2 and lz4; rosbag decompress "
         "makes a plain one");
   }
-  if (!whole)
+  if (!inflate_block(compression, bytes_of(data_), size, chunk_)) {
     file_.fail(
         fmt::format("a chunk that cannot be inflated by {}; the bag is damaged here", compression));
+  }
   left_ = bytes_of(chunk_);
 }
 
-std::optional<BagMessage> BagFile::next_in_chunk() {
+std::optional<RosMessage> BagFile::next_in_chunk() {
   RecordCursor cursor(left_);
   const Bytes header = part_of(cursor);
   const Bytes data = part_of(cursor);
@@ -204,14 +148,29 @@ std::optional<BagMessage> BagFile::next_in_chunk() {
   return message_of(header_of(header), data);
 }
 
-BagConnections connections_of(const std::string& path) {
-  BagFile bag(path);
+/// A bag that was closed has its connections once more behind the chunks.
+bool BagFile::read_index() {
   try {
-    while (bag.next()) {
-    }
+    return read_connections();
   } catch (const RowError&) {  // told by those who read the messages
+  } catch (const RecordTooShort&) {
   }
-  return bag.connections();
+  return false;
+}
+
+bool BagFile::read_connections() {
+  Header header;
+  if (!read_record(header) || number<uint8_t>(header, "op") != static_cast<uint8_t>(BagOp::bag)) {
+    return false;
+  }
+  const auto index = number<uint64_t>(header, "index_pos");
+  const auto count = number<uint32_t>(header, "conn_count");
+  if (index == 0 || !file_.go_to(index)) return false;
+  while (topics_.size() < count && read_record(header)) {
+    if (number<uint8_t>(header, "op") != static_cast<uint8_t>(BagOp::connection)) return false;
+    connect(header, bytes_of(data_));
+  }
+  return topics_.size() == count;
 }
 
 }  // namespace foucault::rawlog

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "inflated_file.h"
@@ -13,7 +14,9 @@ namespace foucault::rawlog {
 class BinaryFile : public InputFile, public Place {
  public:
   /// Throws DataError if the file cannot be opened.
-  explicit BinaryFile(const std::string& path) : path_(path), file_(path) {}
+  explicit BinaryFile(const std::string& path) : BinaryFile(path, path) {}
+  /// Messages name it `named`.
+  BinaryFile(const std::string& path, std::string named) : path_(std::move(named)), file_(path) {}
 
   const std::string& path() const override { return path_; }
   int64_t position() const override { return position_; }
@@ -29,6 +32,10 @@ class BinaryFile : public InputFile, public Place {
   /// The next bytes, as many as there are. False if the file ends before.
   bool read(uint64_t count, std::vector<unsigned char>& bytes);
   bool skip(uint64_t count);
+  /// False if the file is not plain, or too short.
+  bool go_to(uint64_t byte) { return file_.go_to(byte); }
+  /// Of the file as it lies there, compressed or not.
+  uint64_t size() const { return file_.file_size(); }
 
  private:
   std::string where() const override { return place(position_); }

@@ -9,14 +9,15 @@
 #include <set>
 #include <utility>
 
-#include "bag_file.h"
 #include "csv_readers.h"
 #include "foucault/core/constants.h"
 #include "foucault/core/error.h"
 #include "foucault/core/time.h"
 #include "foucault/rawlog/import_mapping.h"
 #include "import_run.h"
+#include "inflate_block.h"
 #include "ros_layout.h"
+#include "ros_recording.h"
 
 namespace foucault::rawlog {
 
@@ -63,21 +64,21 @@ Eigen::Vector3d vector(const Values& values, const std::array<Slot, 3>& slots) {
 
 /// A message type with the header's stamp.
 struct Fields {
-  explicit Fields(const std::string& definition) : layout(definition) {
-    seconds = layout.want("header.stamp.secs");
-    nanoseconds = layout.want("header.stamp.nsecs");
+  explicit Fields(const RosType& type) : layout(type) {
+    seconds = layout.want("header.stamp.sec");
+    nanoseconds = layout.want("header.stamp.nanosec");
   }
 
-  /// Of the header; of the recording where there is none.
-  int64_t stamp(const Values& values, const BagMessage& message) const {
+  /// Of the header, if it has one.
+  std::optional<int64_t> stamp(const Values& values) const {
     constexpr double kMost = 0x1p32;
-    if (!seconds || !nanoseconds) return message.recorded_ns;
+    if (!seconds || !nanoseconds) return std::nullopt;
     for (const double value : {values[*seconds], values[*nanoseconds]}) {
-      if (!(value >= 0 && value < kMost)) return message.recorded_ns;
+      if (!(value >= 0 && value < kMost)) return std::nullopt;
     }
     const auto stamp = static_cast<int64_t>(values[*seconds]) * kNanosecondsPerSecond +
                        static_cast<int64_t>(values[*nanoseconds]);
-    return stamp == 0 ? message.recorded_ns : stamp;
+    return stamp == 0 ? std::nullopt : std::optional<int64_t>(stamp);
   }
 
   RosLayout layout;
@@ -85,8 +86,8 @@ struct Fields {
 };
 
 struct RosImu : Fields {
-  explicit RosImu(const std::string& definition)
-      : Fields(definition),
+  explicit RosImu(const RosType& type)
+      : Fields(type),
         gyro(want_vector(layout, "angular_velocity")),
         accel(want_vector(layout, "linear_acceleration")),
         gyro_covariance(layout.want("angular_velocity_covariance", 9)),
@@ -104,8 +105,8 @@ struct RosImu : Fields {
 };
 
 struct RosFix : Fields {
-  explicit RosFix(const std::string& definition)
-      : Fields(definition),
+  explicit RosFix(const RosType& type)
+      : Fields(type),
         position{layout.want("latitude"), layout.want("longitude"), layout.want("altitude")},
         status(layout.want("status.status")),
         covariance(layout.want("position_covariance", 9)),
@@ -117,13 +118,14 @@ struct RosFix : Fields {
 };
 
 struct RosVelocity : Fields {
-  explicit RosVelocity(const std::string& definition)
-      : Fields(definition), velocity(want_vector(layout, "twist.linear")) {
+  explicit RosVelocity(const RosType& type)
+      : Fields(type), velocity(want_vector(layout, "twist.linear")) {
     if (has_all(velocity)) return;
     velocity = want_vector(layout, "twist.twist.linear");
     covariance = layout.want("twist.covariance", 36);
   }
-  bool complete() const { return has_all(velocity); }
+  /// One with a frame of its own (nav_msgs/Odometry) is told along the axes of the vehicle.
+  bool complete() const { return has_all(velocity) && !layout.has("child_frame_id"); }
 
   std::array<Slot, 3> velocity;
   Slot covariance;
@@ -132,19 +134,22 @@ struct RosVelocity : Fields {
 // Topics ----------------------------------------------------------------------------------------
 
 template <class Kind>
-bool can_be(const BagConnection& connection) {
+bool can_be(const RosType& type) {
   try {
-    return Kind(connection.definition).complete();
+    return Kind(type).complete();
   } catch (const BadRecord&) {
     return false;
   }
 }
 
-std::string listed(const BagConnections& connections) {
-  std::set<std::string> topics;
-  for (const auto& [id, c] : connections) topics.insert(fmt::format("{} ({})", c.topic, c.type));
-  std::string list = topics.empty() ? "none" : "";
-  for (const std::string& topic : topics) list += (list.empty() ? "" : ", ") + topic;
+std::string listed(const RosTopics& topics) {
+  std::set<std::string> found;
+  for (const auto& [id, topic] : topics) {
+    found.insert(fmt::format("{} ({}{})", topic.name, topic.type.name,
+                             topic.messages == 0 ? ", no message" : ""));
+  }
+  std::string list = found.empty() ? "none" : "";
+  for (const std::string& topic : found) list += (list.empty() ? "" : ", ") + topic;
   for (char& c : list) {
     if (static_cast<unsigned char>(c) < ' ') c = '?';  // an error is one line
   }
@@ -153,65 +158,83 @@ std::string listed(const BagConnections& connections) {
 
 /// The topic that is to be taken: the given one, or the only one with what a `Kind` needs.
 template <class Kind>
-std::string topic_of(const BagImport& options, const BagConnections& connections,
+std::string topic_of(const BagImport& options, const RosTopics& topics,
                      const std::optional<std::string>& given, const char* option,
                      const char* needs) {
   std::set<std::string> found;
-  for (const auto& [id, connection] : connections) {
-    if (given && connection.topic != *given) continue;
-    if (can_be<Kind>(connection)) found.insert(connection.topic);
+  for (const auto& [id, topic] : topics) {
+    if (given ? topic.name != *given : topic.messages == 0) continue;
+    if (can_be<Kind>(topic.type)) found.insert(topic.name);
   }
   if (found.size() == 1) return *found.begin();
   if (given) {
     throw UsageError(fmt::format("--{}-topic {}: '{}' has no such topic with {}; it has {}", option,
-                                 *given, options.bag, needs, listed(connections)));
+                                 *given, options.bag, needs, listed(topics)));
   }
   if (found.empty()) {
-    throw DataError(fmt::format("'{}' has no topic with {}; it has {}", options.bag, needs,
-                                listed(connections)));
+    throw DataError(
+        fmt::format("'{}' has no topic with {}; it has {}", options.bag, needs, listed(topics)));
   }
   throw UsageError(fmt::format("'{}' has {} topics with {}: choose one by --{}-topic; it has {}",
-                               options.bag, found.size(), needs, option, listed(connections)));
+                               options.bag, found.size(), needs, option, listed(topics)));
 }
 
 // Readers ---------------------------------------------------------------------------------------
 
-/// Messages of some topics of a bag.
+/// Messages of some topics of a recording.
 class BagReader : public RecordReader {
  public:
-  explicit BagReader(const std::string& path) : bag_(path) {}
+  BagReader(RosLog& log, std::set<std::string> topics) : recording_(log.open()) {
+    recording_->select(std::move(topics));
+  }
 
-  const InputFile& table() const override { return bag_.file(); }
+  const InputFile& table() const override { return recording_->file(); }
+
+  std::vector<std::string> notices() const override {
+    std::vector<std::string> found = recording_->notices();
+    for (const auto& [topic, count] : without_stamp_) {
+      found.push_back(fmt::format(
+          "{}: {} messages of {} have no stamp of their own, that of their recording was taken",
+          table().path(), count, topic));
+    }
+    return found;
+  }
 
  protected:
-  const Place& place() const { return bag_.file(); }
-  const std::string& topic_of(const BagMessage& message) const {
-    const auto found = bag_.connections().find(message.connection);
-    if (found == bag_.connections().end()) {
-      place().fail(
-          fmt::format("a message of connection {}, which nothing defines; the bag is "
-                      "damaged here",
-                      message.connection));
-    }
-    return found->second.topic;
-  }
-  std::optional<BagMessage> next_message() { return bag_.next(); }
+  const Place& place() const { return recording_->place(); }
 
-  /// The layout of a message's connection.
+  const RosTopic& topic_of(const RosMessage& message) const {
+    const auto found = recording_->topics().find(message.topic);
+    if (found == recording_->topics().end()) {
+      place().fail(
+          fmt::format("a message of topic {}, which nothing defines; the recording is damaged here",
+                      message.topic));
+    }
+    return found->second;
+  }
+  std::optional<RosMessage> next_message() { return recording_->next(); }
+
+  /// The layout of a message's topic.
   template <class Kind>
-  const Kind& fields_of(const BagMessage& message, std::map<uint32_t, Kind>& known) const {
-    const auto found = known.find(message.connection);
+  const Kind& fields_of(const RosMessage& message, std::map<uint32_t, Kind>& known) const {
+    const auto found = known.find(message.topic);
     if (found != known.end()) return found->second;
-    const std::string& definition = bag_.connections().at(message.connection).definition;
     return contained([&]() -> const Kind& {
-      Kind fields(definition);
+      Kind fields(topic_of(message).type);
       if (!fields.complete()) place().fail("a message whose definition lacks what is needed");
-      return known.emplace(message.connection, std::move(fields)).first->second;
+      return known.emplace(message.topic, std::move(fields)).first->second;
     });
   }
 
-  Values values_of(const Fields& fields, const BagMessage& message) const {
-    return contained([&] { return fields.layout.read(message.bytes); });
+  Values values_of(const Fields& fields, const RosMessage& message) {
+    return contained([&] { return fields.layout.read(plain(message)); });
+  }
+
+  /// Of the header; of the recording where there is none.
+  int64_t stamp_of(const Fields& fields, const Values& values, const RosMessage& message) {
+    const std::optional<int64_t> stamp = fields.stamp(values);
+    if (!stamp) ++without_stamp_[topic_of(message).name];
+    return stamp.value_or(message.recorded_ns);
   }
 
   StampOrder order_;
@@ -222,28 +245,40 @@ class BagReader : public RecordReader {
     try {
       return action();
     } catch (const RecordTooShort&) {
-      place().fail("a message that is shorter than its definition; the bag is damaged here");
+      place().fail("a message that is shorter than its definition; the recording is damaged here");
     } catch (const BadRecord& error) {
-      place().fail(fmt::format("{}; the bag is damaged here", error.what()));
+      place().fail(fmt::format("{}; the recording is damaged here", error.what()));
     }
   }
 
-  BagFile bag_;
+  /// rosbag 2 may compress each message, which then cannot begin as one of CDR does.
+  Bytes plain(const RosMessage& message) {
+    if (topic_of(message).type.encoding != RosEncoding::cdr || !is_zstd(message.bytes)) {
+      return message.bytes;
+    }
+    const size_t size = zstd_size(message.bytes).value_or(0);
+    if (!inflate_block("zstd", message.bytes, size, inflated_)) {
+      place().fail("a message that cannot be inflated by zstd; the recording is damaged here");
+    }
+    return bytes_of(inflated_);
+  }
+
+  std::unique_ptr<RosRecording> recording_;
+  std::vector<unsigned char> inflated_;
+  std::map<std::string, int64_t> without_stamp_;
 };
 
 class BagImu : public BagReader {
  public:
-  BagImu(const std::string& path, std::string topic) : BagReader(path), topic_(std::move(topic)) {}
+  BagImu(RosLog& log, const std::string& topic) : BagReader(log, {topic}) {}
 
   std::optional<Record> next() override {
-    while (const std::optional<BagMessage> message = next_message()) {
-      if (topic_of(*message) == topic_) return sample(*message);
-    }
-    return std::nullopt;
+    const std::optional<RosMessage> message = next_message();
+    return message ? std::optional<Record>(sample(*message)) : std::nullopt;
   }
 
  private:
-  imu::ImuSample sample(const BagMessage& message) {
+  imu::ImuSample sample(const RosMessage& message) {
     const RosImu& fields = fields_of(message, fields_);
     const Values values = values_of(fields, message);
     if (fields.absent(values)) {
@@ -257,14 +292,13 @@ class BagImu : public BagReader {
     if (!sample.gyro_b.allFinite() || !sample.accel_b.allFinite()) {
       place().fail("an IMU sample with a value that is not finite");
     }
-    sample.t_ns = checked_stamp(place(), fields.stamp(values, message));
+    sample.t_ns = checked_stamp(place(), stamp_of(fields, values, message));
     order_.check(place(), sample.t_ns,
                  sample.gyro_b != last_.gyro_b || sample.accel_b != last_.accel_b);
     last_ = sample;
     return sample;
   }
 
-  std::string topic_;
   std::map<uint32_t, RosImu> fields_;
   imu::ImuSample last_;
 };
@@ -272,9 +306,9 @@ class BagImu : public BagReader {
 /// Fixes, each with the velocity of its stamp, which may come before or behind it.
 class BagGnss : public BagReader {
  public:
-  BagGnss(const BagImport& options, std::string topic)
-      : BagReader(options.bag),
-        topic_(std::move(topic)),
+  BagGnss(RosLog& log, const BagImport& options, const std::string& topic)
+      : BagReader(log, {topic, options.velocity_topic.value_or(topic)}),
+        topic_(topic),
         velocity_topic_(options.velocity_topic),
         sigma_(options.gnss_sigma),
         velocity_sigma_(options.velocity_sigma) {}
@@ -282,8 +316,8 @@ class BagGnss : public BagReader {
   int64_t without_fix() const override { return without_fix_; }
 
   std::optional<Record> next() override {
-    while (const std::optional<BagMessage> message = next_message()) {
-      const std::string& topic = topic_of(*message);
+    while (const std::optional<RosMessage> message = next_message()) {
+      const std::string& topic = topic_of(*message).name;
       std::optional<GnssFix> ready;
       if (velocity_topic_ && topic == *velocity_topic_) {
         ready = take_velocity(*message);
@@ -308,10 +342,11 @@ class BagGnss : public BagReader {
   }
 
   /// The fix that is complete by it.
-  std::optional<GnssFix> take_fix(const BagMessage& message) {
+  std::optional<GnssFix> take_fix(const RosMessage& message) {
     const RosFix& fields = fields_of(message, fields_);
     const Values values = values_of(fields, message);
-    if (fields.status && values[*fields.status] < 0) {
+    constexpr double kNoFix = -1;
+    if (fields.status && values[*fields.status] == kNoFix) {
       ++without_fix_;
       return std::nullopt;
     }
@@ -322,13 +357,13 @@ class BagGnss : public BagReader {
     return before;
   }
 
-  std::optional<GnssFix> take_velocity(const BagMessage& message) {
+  std::optional<GnssFix> take_velocity(const RosMessage& message) {
     const RosVelocity& fields = fields_of(message, velocity_fields_);
     const Values values = values_of(fields, message);
     const Eigen::Vector3d enu = vector(values, fields.velocity);
     if (!enu.allFinite()) return std::nullopt;  // no velocity at this time
     Velocity velocity;
-    velocity.t_ns = fields.stamp(values, message);
+    velocity.t_ns = stamp_of(fields, values, message);
     velocity.velocity_n = {enu.y(), enu.x(), -enu.z()};
     constexpr size_t kWidth = 6;
     if (fields.covariance) velocity.covariance = ned(matrix(values, *fields.covariance, kWidth));
@@ -346,21 +381,33 @@ class BagGnss : public BagReader {
     return true;
   }
 
-  GnssFix fix_of(const RosFix& fields, const Values& values, const BagMessage& message) {
+  /// As sensor_msgs/NavSatStatus has it: without and with corrections from satellites or stations.
+  static FixQuality quality_of(double status) {
+    if (status < 0) return FixQuality::unknown;
+    return status > 0 ? FixQuality::differential : FixQuality::single;
+  }
+
+  /// Of north, east, down; zero where the message tells none. Only that which is called known is
+  /// more than a diagonal (1: by the dilution of precision, 2: the diagonal is known).
+  static Eigen::Matrix3d covariance_of(const RosFix& fields, const Values& values) {
+    constexpr double kKnown = 3;
+    const double type = fields.covariance_type ? values[*fields.covariance_type] : 0;
+    if (!fields.covariance || type <= 0) return Eigen::Matrix3d::Zero();
+    const Eigen::Matrix3d found = ned(matrix(values, *fields.covariance, 3));
+    return type == kKnown ? found : Eigen::Matrix3d(found.diagonal().asDiagonal());
+  }
+
+  GnssFix fix_of(const RosFix& fields, const Values& values, const RosMessage& message) {
     const Eigen::Vector3d p = vector(values, fields.position);
     if (!p.allFinite()) place().fail("a fix with a value that is not finite");
     GnssFix fix;
     fix.antenna = checked_position(place(), p.x() * kDegree, p.y() * kDegree, p.z());
-    const bool known =
-        fields.covariance && fields.covariance_type && values[*fields.covariance_type] > 0;
-    if (known) fix.position_covariance = ned(matrix(values, *fields.covariance, 3));
+    fix.position_covariance = covariance_of(fields, values);
     if (!is_covariance(fix.position_covariance)) {
       fix.position_covariance = constant(sigma_, "gnss");
     }
-    if (fields.status) {
-      fix.quality = values[*fields.status] > 0 ? FixQuality::differential : FixQuality::single;
-    }
-    fix.t_ns = checked_stamp(place(), fields.stamp(values, message));
+    if (fields.status) fix.quality = quality_of(values[*fields.status]);
+    fix.t_ns = checked_stamp(place(), stamp_of(fields, values, message));
     order_.check(place(), fix.t_ns);
     return fix;
   }
@@ -397,15 +444,18 @@ ImportSummary import_bag(const BagImport& options) {
   imu.axes = options.imu_axes;
   ImportInputs inputs;
   naming_mapping("--imu-axes", [&] { inputs.mounting = imu.mounting(); });
-  const BagConnections connections = connections_of(options.bag);
-  inputs.imu = std::make_unique<BagImu>(
-      options.bag, topic_of<RosImu>(options, connections, options.imu_topic, "imu",
-                                    "angular_velocity and linear_acceleration"));
-  inputs.gnss = std::make_unique<BagGnss>(
-      options, topic_of<RosFix>(options, connections, options.gnss_topic, "gnss",
-                                "latitude, longitude and altitude"));
+  RosLog log(options.bag);
+  const RosTopics topics = log.topics();
+  inputs.imu =
+      std::make_unique<BagImu>(log, topic_of<RosImu>(options, topics, options.imu_topic, "imu",
+                                                     "angular_velocity and linear_acceleration"));
+  inputs.gnss =
+      std::make_unique<BagGnss>(log, options,
+                                topic_of<RosFix>(options, topics, options.gnss_topic, "gnss",
+                                                 "latitude, longitude and altitude"));
   if (options.velocity_topic) {
-    topic_of<RosVelocity>(options, connections, options.velocity_topic, "velocity", "a twist");
+    topic_of<RosVelocity>(options, topics, options.velocity_topic, "velocity",
+                          "a twist east, north, up");
   }
   inputs.lever_arm_v = options.lever_arm;
   return run_import(options, std::move(inputs));

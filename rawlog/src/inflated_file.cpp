@@ -49,6 +49,18 @@ double InflatedFile::progress() const {
   return std::min(1.0, static_cast<double>(file_offset_) / static_cast<double>(file_size_));
 }
 
+bool InflatedFile::go_to(uint64_t offset) {
+  if (compressed_ || offset > file_size_) return false;
+  if (fseeko(file_.get(), static_cast<off_t>(offset), SEEK_SET) != 0) return false;
+  stream_.avail_in = 0;
+  position_ = 0;
+  filled_ = 0;
+  offset_ = offset;
+  file_offset_ = offset;
+  end_ = End::none;
+  return true;
+}
+
 void InflatedFile::fill() {
   std::memmove(buffer_.data(), buffer_.data() + position_, filled_ - position_);
   filled_ -= position_;

@@ -44,6 +44,9 @@ class InflatedFile {
     offset_ += count;
   }
 
+  /// Goes to a byte of a plain file, from which on the window shows. False if it cannot.
+  bool go_to(uint64_t offset);
+
   /// How the contents end; none while there are more than the window shows.
   End end() const { return end_; }
   /// Of the window, in the contents.

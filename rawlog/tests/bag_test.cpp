@@ -9,26 +9,18 @@
 #include "foucault/core/constants.h"
 #include "foucault/rawlog/import_bag.h"
 #include "foucault/rawlog/rawlog_source.h"
+#include "ros_bytes.h"
 #include "scratch.h"
 
 namespace foucault::rawlog {
 namespace {
 
 using test::error_of;
+using test::packed;
+using test::part;
 using test::Scratch;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
-
-template <class... T>
-std::string packed(const T&... values) {
-  std::string bytes;
-  (bytes.append(reinterpret_cast<const char*>(&values), sizeof values), ...);
-  return bytes;
-}
-
-std::string part(const std::string& bytes) {
-  return packed(static_cast<uint32_t>(bytes.size())) + bytes;
-}
 
 using Header = std::vector<std::pair<std::string, std::string>>;
 

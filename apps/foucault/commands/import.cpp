@@ -16,6 +16,7 @@ constexpr Command kFormats[] = {
     {"bag", "A bag of ROS 1: topics of an IMU and a receiver", declare_import_bag},
     {"ubx", "UBX of a u-blox receiver, with its own IMU or a table", declare_import_ubx},
     {"rinex", "Raw observations (RINEX), made to fixes by RTKLIB", declare_import_rinex},
+    {"bag", "A recording of ROS 1 or 2, MCAP: topics of an IMU and a receiver", declare_import_bag},
 };
 
 constexpr const char* kExamples =

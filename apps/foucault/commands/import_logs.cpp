@@ -34,7 +34,8 @@ std::function<void(Call&)> declare_import_bag(CLI::App& app) {
     std::optional<std::string> gnss_sigma, velocity_sigma;
   };
   const auto o = std::make_shared<Options>();
-  app.add_option("bag", o->import.bag, "Bag of ROS 1 (.bag)")->required();
+  app.add_option("bag", o->import.bag, "Bag of ROS 1, MCAP, or rosbag 2: its folder or a .db3")
+      ->required();
   app.add_option("--imu-topic", o->import.imu_topic,
                  "Of sensor_msgs/Imu; needed if there are several");
   app.add_option("--gnss-topic", o->import.gnss_topic,

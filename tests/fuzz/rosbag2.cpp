@@ -1,0 +1,6 @@
+#include "recording.h"
+
+/// The bytes are a database of rosbag 2.
+int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+  return foucault::fuzz::import_recording(data, size);
+}
