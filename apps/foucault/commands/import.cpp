@@ -13,7 +13,6 @@ constexpr Command kFormats[] = {
     {"csv", "Tables in columns, told by a mapping", declare_import_csv},
     {"nmea", "NMEA 0183 of a receiver, and an IMU table", declare_import_nmea},
     {"ulog", "A ULog of PX4: IMU and GNSS of an autopilot", declare_import_ulog},
-    {"bag", "A bag of ROS 1: topics of an IMU and a receiver", declare_import_bag},
     {"ubx", "UBX of a u-blox receiver, with its own IMU or a table", declare_import_ubx},
     {"rinex", "Raw observations (RINEX), made to fixes by RTKLIB", declare_import_rinex},
     {"bag", "A recording of ROS 1 or 2, MCAP: topics of an IMU and a receiver", declare_import_bag},
