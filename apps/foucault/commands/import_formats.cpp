@@ -45,10 +45,12 @@ void report_import(Console& console, const rawlog::ImportSummary& summary, const
   if (summary.wheel_speeds > 0) {
     console.say(fmt::format("{:<10} {}", "wheels", summary.wheel_speeds));
   }
-  const Eigen::Vector3d arm = summary.lever_arm_v.value_or(Eigen::Vector3d::Zero());
-  console.say(fmt::format("{:<10} forward {:.3f}, right {:.3f}, down {:.3f} m{}", "lever arm",
-                          arm.x(), arm.y(), arm.z(),
-                          summary.lever_arm_v ? "" : " (not known: give --lever-arm)"));
+  if (!summary.imu.file.empty()) {
+    const Eigen::Vector3d arm = summary.lever_arm_v.value_or(Eigen::Vector3d::Zero());
+    console.say(fmt::format("{:<10} forward {:.3f}, right {:.3f}, down {:.3f} m{}", "lever arm",
+                            arm.x(), arm.y(), arm.z(),
+                            summary.lever_arm_v ? "" : " (not known: give --lever-arm)"));
+  }
   console.say(fmt::format("{:<10} {}", "written", out));
 }
 
