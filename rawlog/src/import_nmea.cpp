@@ -10,6 +10,7 @@
 #include "foucault/core/error.h"
 #include "foucault/core/fix_quality.h"
 #include "foucault/core/time.h"
+#include "nmea_reader.h"
 #include "nmea_sentences.h"
 
 namespace foucault::rawlog {
@@ -41,11 +42,11 @@ double assumed_sigma(FixQuality quality) {
 
 class NmeaReader : public RecordReader {
  public:
-  NmeaReader(const GnssMapping& mapping, const std::string& path)
-      : epochs_(path),
+  NmeaReader(const GnssMapping& mapping, const NmeaFile& file)
+      : epochs_(file.path, file.named),
         mapping_(mapping),
         offset_ns_(nanoseconds(mapping.time.offset_s)),
-        near_ns_(first_stamp(mapping, path)) {}
+        near_ns_(first_stamp(mapping, file)) {}
 
   const TextTable& table() const override { return epochs_.sentences().table(); }
   int64_t without_fix() const override { return epochs_.without_fix(); }
@@ -93,7 +94,7 @@ class NmeaReader : public RecordReader {
   }
 
  private:
-  static int64_t first_stamp(const GnssMapping& mapping, const std::string& path);
+  static int64_t first_stamp(const GnssMapping& mapping, const NmeaFile& file);
 
   GnssFix fix_of(const NmeaEpoch& epoch) {
     const NmeaPosition& position = *epoch.position;
@@ -160,8 +161,8 @@ class NmeaReader : public RecordReader {
 };
 
 /// The first epoch of the file, dated by the first RMC or ZDA beside a position.
-int64_t NmeaReader::first_stamp(const GnssMapping& mapping, const std::string& path) {
-  NmeaEpochs epochs(path);
+int64_t NmeaReader::first_stamp(const GnssMapping& mapping, const NmeaFile& file) {
+  NmeaEpochs epochs(file.path, file.named);
   std::optional<int64_t> first_time_ns;
   for (bool over = false; !over;) {
     try {
@@ -178,17 +179,23 @@ int64_t NmeaReader::first_stamp(const GnssMapping& mapping, const std::string& p
     throw DataError(fmt::format(
         "'{}' has no position in NMEA: of {} sentences {} have a wrong checksum or none, {} GGA "
         "are without a fix; give a file with GGA sentences",
-        path, epochs.sentences().sentences(), epochs.sentences().damaged(), epochs.without_fix()));
+        file.named, epochs.sentences().sentences(), epochs.sentences().damaged(),
+        epochs.without_fix()));
   }
   const std::optional<int64_t> midnight = midnight_ns(mapping.time.date, "%Y-%m-%d");
   if (midnight) return *midnight + *first_time_ns;
+  if (file.begins_ns) return stamp_near(*first_time_ns, *file.begins_ns);
   throw UsageError(
       fmt::format("'{}' has no date (RMC or ZDA); give gnss.time.date: YYYY-MM-DD, of its first "
                   "position, UTC",
-                  path));
+                  file.named));
 }
 
 }  // namespace
+
+std::unique_ptr<RecordReader> make_nmea_reader(const GnssMapping& mapping, const NmeaFile& file) {
+  return std::make_unique<NmeaReader>(mapping, file);
+}
 
 ImportSummary import_nmea(const NmeaImport& options) {
   const MappingSource source{options.mapping, options.data_dir};
@@ -206,7 +213,7 @@ ImportSummary import_nmea(const NmeaImport& options) {
     if (reference) inputs.reference = make_reference_reader(mapping.reference, *reference);
     inputs.mounting = mapping.imu.mounting();
   });
-  inputs.gnss = std::make_unique<NmeaReader>(mapping.gnss, *gnss);
+  inputs.gnss = make_nmea_reader(mapping.gnss, {*gnss, *gnss, {}});
   inputs.mapping = options.mapping;
   inputs.lever_arm_v = options.lever_arm.value_or(mapping.lever_arm_m);
   return run_import(options, std::move(inputs));
