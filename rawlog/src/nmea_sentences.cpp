@@ -122,8 +122,8 @@ bool is_valid(const Row& row, size_t mode) { return is_blank(row, mode) || row.t
 
 }  // namespace
 
-NmeaSentences::NmeaSentences(const std::string& path)
-    : table_(path, TextTable::Separator::comma, "") {}
+NmeaSentences::NmeaSentences(const std::string& path, const std::string& named)
+    : table_(path, TextTable::Separator::comma, "", named) {}
 
 const Row* NmeaSentences::next() {
   while (const std::optional<std::string_view> sentence = next_sentence()) {

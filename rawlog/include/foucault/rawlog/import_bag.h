@@ -16,6 +16,7 @@ namespace foucault::rawlog {
 /// GNSS: what has latitude, longitude [deg] and altitude [m, above the ellipsoid], as
 ///   sensor_msgs/NavSatFix with its status (corrections from satellites or stations: differential)
 ///   and covariance.
+///   Where there is none, sentences of NMEA (nmea_msgs/Sentence), by their own time.
 /// Velocity: geometry_msgs/TwistStamped or TwistWithCovarianceStamped, east, north, up, of the same
 ///   stamps as the fixes.
 /// Time: the stamp of the message's header; where that is zero, of the recording.
