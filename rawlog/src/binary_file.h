@@ -24,6 +24,8 @@ class BinaryFile : public InputFile, public Place {
   /// From here on position() is that of the next byte.
   void begin_record() { position_ = offset(); }
   int64_t offset() const { return static_cast<int64_t>(file_.offset()); }
+  /// What comes next, without going on: at least InflatedFile::kWindow bytes unless the file ends.
+  Bytes window() { return file_.window(); }
   /// The next bytes, as many as there are. False if the file ends before.
   bool read(uint64_t count, std::vector<unsigned char>& bytes);
   bool skip(uint64_t count);
