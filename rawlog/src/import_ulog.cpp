@@ -10,9 +10,9 @@
 #include <utility>
 #include <vector>
 
+#include "boot_clock.h"
 #include "foucault/core/constants.h"
 #include "foucault/core/error.h"
-#include "foucault/core/median.h"
 #include "foucault/core/time.h"
 #include "import_run.h"
 #include "ulog_file.h"
@@ -22,7 +22,6 @@ namespace foucault::rawlog {
 namespace {
 
 constexpr double kMicrosecond = 1e-6;
-constexpr int64_t kNanosecondsPerMicrosecond = 1000;
 constexpr int64_t kLongestUptime = 1'000'000'000'000'000;  ///< [us]
 
 /// A field with what its numbers are to be multiplied by.
@@ -170,12 +169,6 @@ std::optional<FixQuality> quality_of(const GnssFields& fields, const UlogMessage
   }
 }
 
-/// When a fix was received and, if the receiver knows it, its UTC.
-struct FixTime {
-  int64_t boot_us = 0;
-  std::optional<int64_t> utc_us;
-};
-
 FixTime time_of(const GnssFields& fields, const UlogMessage& message) {
   constexpr int64_t kYear2000 = 946'684'800'000'000;
   constexpr int64_t kYear2096 = 3'976'214'400'000'000;
@@ -185,74 +178,6 @@ FixTime time_of(const GnssFields& fields, const UlogMessage& message) {
   const int64_t utc_us = message.integer(fields.utc->field);
   if (utc_us > kYear2000 && utc_us < kYear2096) time.utc_us = utc_us;
   return time;
-}
-
-/// UTC of the clock since boot: an offset, and a drift where the log is long enough.
-class BootClock {
- public:
-  BootClock() = default;
-  explicit BootClock(const std::vector<FixTime>& fixes);
-
-  int64_t utc_ns(int64_t boot_us) const {
-    const auto since_us = static_cast<double>(boot_us - begin_us_);
-    return (boot_us + offset_us_ + std::llround(mean_us_ + drift_ * since_us)) *
-           kNanosecondsPerMicrosecond;
-  }
-
-  /// The fix's own UTC unless it is far from its reception.
-  int64_t utc_ns(const FixTime& time) const {
-    constexpr int64_t kDelaysVary = 100'000'000;  // [ns]
-    const int64_t received_ns = utc_ns(time.boot_us);
-    if (!time.utc_us) return received_ns;
-    const int64_t own_ns = *time.utc_us * kNanosecondsPerMicrosecond;
-    return std::abs(own_ns - received_ns) < kDelaysVary ? own_ns : received_ns;
-  }
-
- private:
-  void fit(const std::vector<FixTime>& fixes);
-
-  int64_t begin_us_ = 0;
-  int64_t offset_us_ = 0;
-  double mean_us_ = 0;
-  double drift_ = 0;
-};
-
-BootClock::BootClock(const std::vector<FixTime>& fixes) {
-  constexpr int64_t kWrong = 500'000;  // [us]
-  if (fixes.empty()) return;
-  std::vector<double> offsets;
-  for (const FixTime& fix : fixes)
-    offsets.push_back(static_cast<double>(*fix.utc_us - fix.boot_us));
-  offset_us_ = std::llround(median(offsets));
-  std::vector<FixTime> good;
-  for (const FixTime& fix : fixes) {
-    if (std::abs(*fix.utc_us - fix.boot_us - offset_us_) <= kWrong) good.push_back(fix);
-  }
-  if (!good.empty()) fit(good);
-}
-
-/// A line through offsets, least squares.
-void BootClock::fit(const std::vector<FixTime>& fixes) {
-  constexpr double kLongEnough = 120e6;  // [us]
-  constexpr double kMostDrift = 200e-6;
-  begin_us_ = fixes.front().boot_us;
-  const auto n = static_cast<double>(fixes.size());
-  double t = 0;
-  double d = 0;
-  for (const FixTime& fix : fixes) {
-    t += static_cast<double>(fix.boot_us - begin_us_) / n;
-    d += static_cast<double>(*fix.utc_us - fix.boot_us - offset_us_) / n;
-  }
-  double tt = 0;
-  double td = 0;
-  for (const FixTime& fix : fixes) {
-    const double dt = static_cast<double>(fix.boot_us - begin_us_) - t;
-    tt += dt * dt;
-    td += dt * (static_cast<double>(*fix.utc_us - fix.boot_us - offset_us_) - d);
-  }
-  const bool long_enough = fixes.back().boot_us - begin_us_ > kLongEnough;
-  if (long_enough && std::abs(td) < kMostDrift * tt) drift_ = td / tt;
-  mean_us_ = d - drift_ * t;
 }
 
 // Survey ----------------------------------------------------------------------------------------

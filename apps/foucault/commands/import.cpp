@@ -13,6 +13,8 @@ constexpr Command kFormats[] = {
     {"csv", "Tables in columns, told by a mapping", declare_import_csv},
     {"nmea", "NMEA 0183 of a receiver, and an IMU table", declare_import_nmea},
     {"ulog", "A ULog of PX4: IMU and GNSS of an autopilot", declare_import_ulog},
+    {"dataflash", "A DataFlash log of ArduPilot: IMU and GNSS of an autopilot",
+     declare_import_dataflash},
     {"bag", "A bag of ROS 1: topics of an IMU and a receiver", declare_import_bag},
     {"novatel", "Logs of a NovAtel receiver: IMU, GNSS and INS", declare_import_novatel},
 };
@@ -27,6 +29,7 @@ constexpr const char* kExamples =
     "  foucault import nmea --gnss drive.nmea --imu imu.csv --mapping drive.yaml --out "
     "drive.rawlog\n"
     "  foucault import ulog flight.ulg --lever-arm 0.1,0,-0.2 --out flight.rawlog\n"
+    "  foucault import dataflash flight.bin --lever-arm 0.1,0,-0.2 --out flight.rawlog\n"
     "  foucault import bag drive.bag --lever-arm 0.3,0,-0.5 --out drive.rawlog\n"
     "  foucault import novatel drive.gps --lever-arm 0.3,0,-0.5 --out drive.rawlog";
 

@@ -17,6 +17,7 @@ std::function<void(Call&)> declare_import_nmea(CLI::App& app);
 std::function<void(Call&)> declare_import_ulog(CLI::App& app);
 std::function<void(Call&)> declare_import_bag(CLI::App& app);
 std::function<void(Call&)> declare_import_novatel(CLI::App& app);
+std::function<void(Call&)> declare_import_dataflash(CLI::App& app);
 
 inline constexpr const char* kLeverArmHelp =
     "IMU to antenna along the vehicle's forward, right, down [m]: X,Y,Z";
