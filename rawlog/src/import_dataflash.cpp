@@ -106,13 +106,12 @@ FixTime time_of(const DataflashMessage& message) {
   if (!(std::abs(week) < kMost && std::abs(ms) < kMost)) {
     message.place().fail("a GPS time that cannot be; the file is damaged here");
   }
-  constexpr int64_t kNanosecondsPerMillisecond = 1'000'000;
-  constexpr int64_t kNanosecondsPerMicrosecond = 1000;
+  constexpr int64_t kNsOfMs = 1'000'000;
+  constexpr int64_t kNsOfUs = 1000;
   FixTime time{boot_us(message), {}};
   if (week > 0) {
-    time.utc_us = gps_stamp(message.place(), std::llround(week),
-                            std::llround(ms) * kNanosecondsPerMillisecond) /
-                  kNanosecondsPerMicrosecond;
+    time.utc_us =
+        gps_stamp(message.place(), std::llround(week), std::llround(ms) * kNsOfMs) / kNsOfUs;
   }
   return time;
 }

@@ -77,7 +77,7 @@ uint32_t little_endian(const unsigned char* at, size_t count) {
 
 bool is_capital(unsigned char c) { return c >= 'A' && c <= 'Z'; }
 
-std::string_view text_of(Bytes bytes) {
+std::string_view novatel_text(Bytes bytes) {
   return {reinterpret_cast<const char*>(bytes.begin), bytes.size()};
 }
 
@@ -172,7 +172,7 @@ std::optional<NovatelFile::Frame> NovatelFile::binary_frame(Bytes bytes) {
 /// None where no log begins; one of another number counts where it is whole.
 std::optional<NovatelFile::Frame> NovatelFile::ascii_frame(Bytes bytes) {
   constexpr size_t kLongestLine = 4096;  // of the logs that are read
-  const std::string_view window = text_of(bytes).substr(0, kLongestLine);
+  const std::string_view window = novatel_text(bytes).substr(0, kLongestLine);
   const std::string_view line =
       window.substr(0, std::min(window.find_first_of("\r\n"), window.size()));
   const size_t comma = line.find(',');
