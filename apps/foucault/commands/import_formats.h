@@ -18,6 +18,8 @@ std::function<void(Call&)> declare_import_ulog(CLI::App& app);
 std::function<void(Call&)> declare_import_bag(CLI::App& app);
 std::function<void(Call&)> declare_import_ubx(CLI::App& app);
 std::function<void(Call&)> declare_import_rinex(CLI::App& app);
+std::function<void(Call&)> declare_import_novatel(CLI::App& app);
+std::function<void(Call&)> declare_import_dataflash(CLI::App& app);
 
 inline constexpr const char* kLeverArmHelp =
     "IMU to antenna along the vehicle's forward, right, down [m]: X,Y,Z";
