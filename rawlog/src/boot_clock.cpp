@@ -1,30 +1,8 @@
 #include "boot_clock.h"
 
-#include <cstdlib>
-
 #include "foucault/core/median.h"
 
 namespace foucault::rawlog {
-
-namespace {
-
-constexpr int64_t kNanosecondsPerMicrosecond = 1000;
-
-}  // namespace
-
-int64_t BootClock::utc_ns(int64_t boot_us) const {
-  const auto since_us = static_cast<double>(boot_us - begin_us_);
-  return (boot_us + offset_us_ + std::llround(mean_us_ + drift_ * since_us)) *
-         kNanosecondsPerMicrosecond;
-}
-
-int64_t BootClock::utc_ns(const FixTime& time) const {
-  constexpr int64_t kDelaysVary = 100'000'000;  // [ns]
-  const int64_t received_ns = utc_ns(time.boot_us);
-  if (!time.utc_us) return received_ns;
-  const int64_t own_ns = *time.utc_us * kNanosecondsPerMicrosecond;
-  return std::abs(own_ns - received_ns) < kDelaysVary ? own_ns : received_ns;
-}
 
 BootClock::BootClock(const std::vector<FixTime>& fixes) {
   constexpr int64_t kWrong = 500'000;  // [us]

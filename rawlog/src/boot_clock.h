@@ -2,12 +2,16 @@
 
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <optional>
 #include <vector>
 
+/// A sensor's clock that counts since power-up, tied to UTC by the fixes of the same recording.
 namespace foucault::rawlog {
 
-/// When a fix was received on a clock since boot and, if the receiver knows it, its UTC.
+inline constexpr int64_t kNanosecondsPerMicrosecond = 1000;
+
+/// When a fix was received and, if the receiver knows it, its UTC.
 struct FixTime {
   int64_t boot_us = 0;
   std::optional<int64_t> utc_us;
@@ -17,12 +21,22 @@ struct FixTime {
 class BootClock {
  public:
   BootClock() = default;
-  /// All of `fixes` have their UTC; those whose offset is another than most have are left out.
   explicit BootClock(const std::vector<FixTime>& fixes);
 
-  int64_t utc_ns(int64_t boot_us) const;
+  int64_t utc_ns(int64_t boot_us) const {
+    const auto since_us = static_cast<double>(boot_us - begin_us_);
+    return (boot_us + offset_us_ + std::llround(mean_us_ + drift_ * since_us)) *
+           kNanosecondsPerMicrosecond;
+  }
+
   /// The fix's own UTC unless it is far from its reception.
-  int64_t utc_ns(const FixTime& time) const;
+  int64_t utc_ns(const FixTime& time) const {
+    constexpr int64_t kDelaysVary = 100'000'000;  // [ns]
+    const int64_t received_ns = utc_ns(time.boot_us);
+    if (!time.utc_us) return received_ns;
+    const int64_t own_ns = *time.utc_us * kNanosecondsPerMicrosecond;
+    return std::abs(own_ns - received_ns) < kDelaysVary ? own_ns : received_ns;
+  }
 
  private:
   void fit(const std::vector<FixTime>& fixes);
