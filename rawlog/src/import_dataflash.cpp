@@ -107,11 +107,10 @@ FixTime time_of(const DataflashMessage& message) {
     message.place().fail("a GPS time that cannot be; the file is damaged here");
   }
   constexpr int64_t kNsOfMs = 1'000'000;
-  constexpr int64_t kNsOfUs = 1000;
   FixTime time{boot_us(message), {}};
   if (week > 0) {
-    time.utc_us =
-        gps_stamp(message.place(), std::llround(week), std::llround(ms) * kNsOfMs) / kNsOfUs;
+    time.utc_us = gps_stamp(message.place(), std::llround(week), std::llround(ms) * kNsOfMs) /
+                  kNanosecondsPerMicrosecond;
   }
   return time;
 }
