@@ -9,12 +9,11 @@
 #include "foucault/core/constants.h"
 #include "foucault/core/time.h"
 #include "import_run.h"
+#include "nmea_accuracy.h"
 
 namespace foucault::rawlog {
 
 namespace {
-
-constexpr double kKnot = 1852.0 / kSecondsPerHour;  ///< [m/s]
 
 constexpr size_t kAddress = 5;  ///< two letters of the talker (GP, GN, GL ...), three of the type
 
