@@ -1,4 +1,6 @@
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <iterator>
 #include <utility>
 #include <vector>
 
@@ -14,6 +16,7 @@ constexpr Command kFormats[] = {
     {"nmea", "NMEA 0183 of a receiver, and an IMU table", declare_import_nmea},
     {"ulog", "A ULog of PX4: IMU and GNSS of an autopilot", declare_import_ulog},
     {"bag", "A bag of ROS 1: topics of an IMU and a receiver", declare_import_bag},
+    {"auto", "Any of these: recognizes a file by its content", declare_import_auto},
 };
 
 constexpr const char* kExamples =
@@ -22,13 +25,21 @@ constexpr const char* kExamples =
     "      --gps-week 2017 --lever-arm -0.073,0.302,0.087 --out trip.rawlog\n"
     "  foucault import rtklib --gnss drive.pos --imu imu.csv --mapping drive.yaml --out "
     "drive.rawlog\n"
+    "  foucault import csv --guess imu.csv gnss.csv --out drive.yaml\n"
     "  foucault import csv --mapping drive.yaml --out drive.rawlog\n"
     "  foucault import nmea --gnss drive.nmea --imu imu.csv --mapping drive.yaml --out "
     "drive.rawlog\n"
     "  foucault import ulog flight.ulg --lever-arm 0.1,0,-0.2 --out flight.rawlog\n"
-    "  foucault import bag drive.bag --lever-arm 0.3,0,-0.5 --out drive.rawlog";
+    "  foucault import bag drive.bag --lever-arm 0.3,0,-0.5 --out drive.rawlog\n"
+    "  foucault import auto drive.bag --lever-arm 0.3,0,-0.5 --out drive.rawlog";
 
 }  // namespace
+
+const Command* find_import(const std::string& name) {
+  const auto* found = std::find_if(std::begin(kFormats), std::end(kFormats),
+                                   [&](const Command& format) { return name == format.name; });
+  return found == std::end(kFormats) ? nullptr : found;
+}
 
 std::function<void(Call&)> declare_import(CLI::App& app) {
   app.require_subcommand(1);

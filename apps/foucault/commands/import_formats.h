@@ -16,6 +16,10 @@ std::function<void(Call&)> declare_import_csv(CLI::App& app);
 std::function<void(Call&)> declare_import_nmea(CLI::App& app);
 std::function<void(Call&)> declare_import_ulog(CLI::App& app);
 std::function<void(Call&)> declare_import_bag(CLI::App& app);
+std::function<void(Call&)> declare_import_auto(CLI::App& app);
+
+/// The format of that name; null if this program has none.
+const Command* find_import(const std::string& name);
 
 inline constexpr const char* kLeverArmHelp =
     "IMU to antenna along the vehicle's forward, right, down [m]: X,Y,Z";
