@@ -1,4 +1,6 @@
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <iterator>
 #include <utility>
 #include <vector>
 
@@ -8,6 +10,7 @@ namespace foucault::app {
 namespace {
 
 constexpr Command kFormats[] = {
+    {"auto", "Any of these: recognizes a file by its content", declare_import_auto},
     {"csv", "Tables in columns, told by a mapping", declare_import_csv},
     {"rtklib", "A solution of RTKLIB (.pos) and an IMU table", declare_import_rtklib},
     {"rinex", "Raw observations (RINEX), made to fixes by RTKLIB", declare_import_rinex},
@@ -23,6 +26,8 @@ constexpr Command kFormats[] = {
 
 constexpr const char* kExamples =
     "\nExamples:\n"
+    "  foucault import auto drive.bag --lever-arm 0.3,0,-0.5 --out drive.rawlog\n"
+    "  foucault import csv --guess imu.csv gnss.csv --out drive.yaml\n"
     "  foucault import csv --mapping drive.yaml --out drive.rawlog\n"
     "  foucault import rtklib --gnss drive.pos --imu imu.csv --mapping drive.yaml --out "
     "drive.rawlog\n"
@@ -32,13 +37,17 @@ constexpr const char* kExamples =
     "drive.rawlog\n"
     "  foucault import ubx drive.ubx --lever-arm 0.3,0,-0.5 --out drive.rawlog\n"
     "  foucault import novatel drive.gps --lever-arm 0.3,0,-0.5 --out drive.rawlog\n"
-    "  foucault import bag drive.bag --lever-arm 0.3,0,-0.5 --out drive.rawlog\n"
     "  foucault import ulog flight.ulg --lever-arm 0.1,0,-0.2 --out flight.rawlog\n"
-    "  foucault import dataflash flight.bin --lever-arm 0.1,0,-0.2 --out flight.rawlog\n"
     "  foucault import i2nav --imu ADIS16465.txt --gnss GNSS_RTK.pos --reference truth.nav \\\n"
     "      --gps-week 2017 --lever-arm -0.073,0.302,0.087 --out trip.rawlog";
 
 }  // namespace
+
+const Command* find_import(const std::string& name) {
+  const auto* found = std::find_if(std::begin(kFormats), std::end(kFormats),
+                                   [&](const Command& format) { return name == format.name; });
+  return found == std::end(kFormats) ? nullptr : found;
+}
 
 std::function<void(Call&)> declare_import(CLI::App& app) {
   app.require_subcommand(1);
