@@ -163,10 +163,7 @@ std::string listed(const RosTopics& topics) {
   }
   std::string list = found.empty() ? "none" : "";
   for (const std::string& topic : found) list += (list.empty() ? "" : ", ") + topic;
-  for (char& c : list) {
-    if (static_cast<unsigned char>(c) < ' ') c = '?';  // an error is one line
-  }
-  return list;
+  return one_line(list);
 }
 
 /// The topic that is to be taken: the given one, or the only one with what a `Kind` needs.
@@ -246,7 +243,7 @@ class BagReader : public RecordReader {
   /// Of the header; of the recording where there is none.
   int64_t stamp_of(const Fields& fields, const Values& values, const RosMessage& message) {
     const std::optional<int64_t> stamp = fields.stamp(values);
-    if (!stamp) ++without_stamp_[topic_of(message).name];
+    if (!stamp) ++without_stamp_[one_line(topic_of(message).name)];
     return stamp.value_or(message.recorded_ns);
   }
 
@@ -484,7 +481,8 @@ class BagNmea : public RecordReader {
                                         options.velocity_sigma->data() + 3);
     }
     reader_ = make_nmea_reader(
-        mapping, {sentences_.path(), fmt::format("{} ({})", options.bag, topic), begins_ns});
+        mapping,
+        {sentences_.path(), fmt::format("{} ({})", options.bag, one_line(topic)), begins_ns});
   }
 
   std::optional<Record> next() override { return reader_->next(); }

@@ -33,6 +33,13 @@ bool begins_with(const std::vector<unsigned char>& bytes, std::string_view begin
 
 }  // namespace
 
+std::string one_line(std::string text) {
+  for (char& c : text) {
+    if (static_cast<unsigned char>(c) < ' ') c = '?';
+  }
+  return text;
+}
+
 bool RosRecording::is_selected(uint32_t topic) const {
   if (!selected_) return true;
   const auto found = topics_.find(topic);

@@ -31,6 +31,9 @@ struct RosMessage {
   Bytes bytes;
 };
 
+/// What a recording says, in a message, which is one line.
+std::string one_line(std::string text);
+
 /// Messages of ROS in the order in which they were recorded, whatever the format.
 class RosRecording {
  public:

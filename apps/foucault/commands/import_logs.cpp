@@ -53,7 +53,7 @@ std::function<void(Call&)> declare_import_bag(CLI::App& app) {
   app.add_option("--imu-topic", o->import.imu_topic,
                  "Of sensor_msgs/Imu; needed if there are several");
   app.add_option("--gnss-topic", o->import.gnss_topic,
-                 "Of sensor_msgs/NavSatFix; needed if there are several");
+                 "Of sensor_msgs/NavSatFix, or nmea_msgs/Sentence; needed if there are several");
   app.add_option("--velocity-topic", o->import.velocity_topic,
                  "Of geometry_msgs/TwistStamped, east, north, up, at the stamps of the fixes");
   app.add_option("--imu-axes", o->import.imu_axes,
