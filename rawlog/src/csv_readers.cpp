@@ -75,9 +75,8 @@ struct ImuVector {
     return std::all_of(columns.begin(), columns.end(), [&](size_t c) { return row.is_blank(c); });
   }
   Eigen::Vector3d value(const Row& row) const {
-    const Eigen::Vector3d found(count_of(row, columns[0], counts),
-                                count_of(row, columns[1], counts),
-                                count_of(row, columns[2], counts));
+    Eigen::Vector3d found;
+    for (size_t i = 0; i < 3; ++i) found[static_cast<int>(i)] = count_of(row, columns[i], counts);
     return found * (scale * unit.factor);
   }
   Eigen::Vector3d increment(const Eigen::Vector3d& value, double dt) const {
