@@ -11,6 +11,7 @@
 #include "foucault/core/fix_quality.h"
 #include "foucault/core/time.h"
 #include "nmea_accuracy.h"
+#include "nmea_reader.h"
 #include "nmea_sentences.h"
 
 namespace foucault::rawlog {
@@ -23,11 +24,11 @@ constexpr double kLargestHeight = 1e8;   ///< [m]
 
 class NmeaReader : public RecordReader {
  public:
-  NmeaReader(const GnssMapping& mapping, const std::string& path)
-      : epochs_(path),
+  NmeaReader(const GnssMapping& mapping, const NmeaFile& file)
+      : epochs_(file.path, file.named),
         mapping_(mapping),
         offset_ns_(nanoseconds(mapping.time.offset_s)),
-        first_(first_of(mapping, path)),
+        first_(first_of(mapping, file)),
         near_ns_(first_.stamp_ns) {}
 
   const TextTable& table() const override { return epochs_.sentences().table(); }
@@ -94,7 +95,7 @@ class NmeaReader : public RecordReader {
     int64_t stamp_ns = 0;  ///< of the first position
     bool flat = false;     ///< there are positions of RMC only
   };
-  static First first_of(const GnssMapping& mapping, const std::string& path);
+  static First first_of(const GnssMapping& mapping, const NmeaFile& file);
 
   double flat_sigma_down() const {
     constexpr double kOpenHeight = 1000;  // [m]
@@ -180,7 +181,7 @@ class NmeaReader : public RecordReader {
 
 /// The first epochs of a file with a position, with and without a height.
 struct FirstEpochs {
-  explicit FirstEpochs(const std::string& path) : epochs(path) {}
+  explicit FirstEpochs(const NmeaFile& file) : epochs(file.path, file.named) {}
 
   /// Until there is a position with a height and a date beside one.
   void scan() {
@@ -209,28 +210,33 @@ struct FirstEpochs {
 };
 
 /// Dated by the first RMC, ZDA or PUBX,04 beside a position.
-NmeaReader::First NmeaReader::first_of(const GnssMapping& mapping, const std::string& path) {
-  FirstEpochs found(path);
+NmeaReader::First NmeaReader::first_of(const GnssMapping& mapping, const NmeaFile& file) {
+  FirstEpochs found(file);
   found.scan();
   if (!found.flat_ns) {
     const NmeaSentences& sentences = found.epochs.sentences();
-    throw DataError(
-        fmt::format("'{}' has no position in NMEA: of {} sentences {} have a wrong checksum or "
-                    "none, {} GGA are without a fix; give a file with GGA sentences",
-                    path, sentences.sentences(), sentences.damaged(), found.epochs.without_fix()));
+    throw DataError(fmt::format(
+        "'{}' has no position in NMEA: of {} sentences {} have a wrong checksum or "
+        "none, {} GGA are without a fix; give a file with GGA sentences",
+        file.named, sentences.sentences(), sentences.damaged(), found.epochs.without_fix()));
   }
   const bool flat = !found.position_ns;
   const int64_t first_ns = *found.flat_ns;
   if (found.dated_ns) return {stamp_near(first_ns, *found.dated_ns), flat};
   const std::optional<int64_t> midnight = midnight_ns(mapping.time.date, "%Y-%m-%d");
   if (midnight) return {*midnight + first_ns, flat};
+  if (file.begins_ns) return {stamp_near(first_ns, *file.begins_ns), flat};
   throw UsageError(
       fmt::format("'{}' has no date (RMC or ZDA); give gnss.time.date: YYYY-MM-DD, of its first "
                   "position, UTC",
-                  path));
+                  file.named));
 }
 
 }  // namespace
+
+std::unique_ptr<RecordReader> make_nmea_reader(const GnssMapping& mapping, const NmeaFile& file) {
+  return std::make_unique<NmeaReader>(mapping, file);
+}
 
 ImportSummary import_nmea(const NmeaImport& options) {
   const MappingSource source{options.mapping, options.data_dir};
@@ -238,7 +244,7 @@ ImportSummary import_nmea(const NmeaImport& options) {
   const ImportMapping mapping = add_tables(source, options.imu, options.reference, inputs);
   const auto gnss = input_path(source, options.gnss, mapping.gnss.file);
   if (!gnss) throw UsageError("no NMEA file: give --gnss, or gnss.file in the mapping");
-  inputs.gnss = std::make_unique<NmeaReader>(mapping.gnss, *gnss);
+  inputs.gnss = make_nmea_reader(mapping.gnss, {*gnss, *gnss, {}});
   if (options.lever_arm) inputs.lever_arm_v = options.lever_arm;
   return run_import(options, std::move(inputs));
 }

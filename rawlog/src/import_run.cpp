@@ -13,6 +13,7 @@
 #include "foucault/core/error.h"
 #include "foucault/core/hole.h"
 #include "foucault/core/time.h"
+#include "foucault/core/time_mismatch.h"
 #include "foucault/rawlog/mrpt_convert.h"
 
 namespace foucault::rawlog {
@@ -163,11 +164,11 @@ void check_not_empty(const ImportStream& stream, const char* what) {
 
 void check_overlap(const ImportStream& imu, const ImportStream& other, const char* what) {
   if (other.first_ns <= imu.last_ns && imu.first_ns <= other.last_ns) return;
-  throw DataError(fmt::format(
-      "IMU ({} to {}) and {} ({} to {}) do not overlap; check week, time system and offsets of "
-      "'{}' and '{}'",
-      utc_text(imu.first_ns), utc_text(imu.last_ns), what, utc_text(other.first_ns),
-      utc_text(other.last_ns), imu.file, other.file));
+  throw DataError(
+      fmt::format("IMU ({} to {}) and {} ({} to {}) do not overlap: '{}' begins {} ('{}')",
+                  utc_text(imu.first_ns), utc_text(imu.last_ns), what, utc_text(other.first_ns),
+                  utc_text(other.last_ns), other.file,
+                  describe_mismatch(seconds_between(imu.first_ns, other.first_ns)), imu.file));
 }
 
 void check(const ImportSummary& summary) {

@@ -9,12 +9,11 @@
 #include "foucault/core/constants.h"
 #include "foucault/core/time.h"
 #include "import_run.h"
+#include "nmea_accuracy.h"
 
 namespace foucault::rawlog {
 
 namespace {
-
-constexpr double kKnot = 1852.0 / kSecondsPerHour;  ///< [m/s]
 
 constexpr size_t kAddress = 5;  ///< two letters of the talker (GP, GN, GL ...), three of the type
 
@@ -145,14 +144,14 @@ bool is_valid(const Row& row, size_t mode) { return is_blank(row, mode) || row.t
 
 }  // namespace
 
-NmeaSentences::NmeaSentences(const std::string& path)
-    : NmeaSentences(path, has_no_checksums(path)) {}
+NmeaSentences::NmeaSentences(const std::string& path, const std::string& named)
+    : NmeaSentences(path, named, has_no_checksums(path, named)) {}
 
-NmeaSentences::NmeaSentences(const std::string& path, bool unchecked)
-    : table_(path, TextTable::Separator::comma, ""), unchecked_(unchecked) {}
+NmeaSentences::NmeaSentences(const std::string& path, const std::string& named, bool unchecked)
+    : table_(path, TextTable::Separator::comma, "", named), unchecked_(unchecked) {}
 
-bool NmeaSentences::has_no_checksums(const std::string& path) {
-  NmeaSentences sentences(path, false);
+bool NmeaSentences::has_no_checksums(const std::string& path, const std::string& named) {
+  NmeaSentences sentences(path, named, false);
   int64_t found = 0;
   while (const std::optional<std::string_view> sentence = sentences.next_sentence()) {
     if (sentence->find('*') != std::string_view::npos) return false;

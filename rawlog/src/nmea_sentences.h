@@ -37,7 +37,7 @@ struct NmeaEpoch {
 /// taken.
 class NmeaSentences {
  public:
-  explicit NmeaSentences(const std::string& path);
+  NmeaSentences(const std::string& path, const std::string& named);
 
   /// The first field is the address, e.g. GPGGA. None at the end.
   const Row* next();
@@ -49,8 +49,8 @@ class NmeaSentences {
   bool unchecked() const { return unchecked_; }
 
  private:
-  NmeaSentences(const std::string& path, bool unchecked);
-  static bool has_no_checksums(const std::string& path);
+  NmeaSentences(const std::string& path, const std::string& named, bool unchecked);
+  static bool has_no_checksums(const std::string& path, const std::string& named);
   /// From '$' on; whether it is right is not checked.
   std::optional<std::string_view> next_sentence();
 
@@ -65,7 +65,8 @@ class NmeaSentences {
 /// Sentences of a time of day, joined.
 class NmeaEpochs {
  public:
-  explicit NmeaEpochs(const std::string& path) : sentences_(path) {}
+  /// Messages name the file `named`.
+  NmeaEpochs(const std::string& path, const std::string& named) : sentences_(path, named) {}
 
   /// None at the end. Throws RowError for a sentence that is wrong, and goes on behind it.
   std::optional<NmeaEpoch> next();

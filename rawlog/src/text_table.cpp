@@ -154,15 +154,16 @@ double Row::sigma(size_t column, const std::string& constant) const {
 
 std::string Row::where() const { return fmt::format("{}:{}", *path_, line_); }
 
-TextTable::TextTable(std::string path, Separator separator, std::string comment_signs)
-    : path_(std::move(path)),
+TextTable::TextTable(const std::string& path, Separator separator, std::string comment_signs,
+                     std::string named)
+    : path_(std::move(named)),
       separator_(separator),
       comment_signs_(std::move(comment_signs)),
-      file_(open_for_reading(path_)),
+      file_(open_for_reading(path)),
       buffer_(kLongestLine, '\0') {
   gzbuffer(file_.get(), kGzipBuffer);
   std::error_code error;
-  const auto size = std::filesystem::file_size(path_, error);
+  const auto size = std::filesystem::file_size(path, error);
   file_size_ = error ? 0 : static_cast<double>(size);
   row_.path_ = &path_;
 }

@@ -169,7 +169,7 @@ TEST_P(FactorAtRotation, ObservationJacobians) {
   const Vector3d rate_b(0.3, -0.2, 0.7);
   for (const measurement::ObservationPtr& z : {measurement::gnss_position(fix_near_origin()),
                                                measurement::gnss_velocity(fix_near_origin())}) {
-    const ObservationFactor factor({z, rate_b}, x, state::SlowVector(0), context);
+    const ObservationFactor factor({z, {rate_b, {}}}, x, state::SlowVector(0), context);
     probe(factor, blocks_of({x}), 1e-3, 1e-5);
   }
 }
