@@ -119,6 +119,7 @@ void guess_angle_unit(const GuessTable& table, const FixColumns& columns, Positi
   const std::string& named = table.columns[latitude].name.unit;
   Remark& remark = remarks["angle_unit"];
   constexpr double kLargestDdmm = 18060;
+  mapping.angle_unit = "deg";
   if (largest > kLargestDdmm) {
     mapping.angle_unit = "e7";
     remark.text = "1e-7 deg, by their size";
@@ -138,6 +139,7 @@ void guess_angle_unit(const GuessTable& table, const FixColumns& columns, Positi
 
 void guess_height(const GuessTable& table, FixColumns& columns, PositionMapping& mapping,
                   Remarks& remarks) {
+  mapping.height_unit = "m";
   const bool ellipsoidal = columns.has("height_ellipsoidal");
   const bool msl = columns.has("height_msl");
   for (const char* role : {"height_msl", "height_ellipsoidal"}) {  // the latter if there are both

@@ -14,7 +14,7 @@ namespace foucault::rawlog {
 
 namespace {
 
-const std::vector<std::string> kAngleUnits{"deg", "rad", "ddmm", "e7"};
+const std::vector<std::string> kAngleUnits{"auto", "deg", "rad", "ddmm", "ddmmss", "e7"};
 const std::vector<std::string> kHeights{"ellipsoidal", "msl"};
 constexpr Range kAnyNumber{};
 constexpr Range kSeconds{-1e9, 1e9};  // some thirty years
@@ -99,6 +99,9 @@ void ImuMapping::fields(ConfigFields& f) {
   f.text("accel_unit", accel_unit, or_auto(acceleration_units()),
          "unit of the specific forces; m_s: velocity increments since the row before; auto: by "
          "gravity");
+  f.text("counts", counts, {"auto", "decimal", "uint16", "hex"},
+         "how numbers are written: uint16: two's complement of 16 bits as 0 to 65535; hex: two's "
+         "complement in hexadecimal digits; auto: by the cells");
   f.number("gyro_scale", gyro_scale, kPositive, "of raw counts: value times this is in gyro_unit");
   f.number("accel_scale", accel_scale, kPositive,
            "of raw counts: value times this is in accel_unit");
@@ -127,26 +130,32 @@ void OriginMapping::fields(ConfigFields& f) {
 void PositionMapping::fields(ConfigFields& f) {
   TableMapping::fields(f);
   f.text("angle_unit", angle_unit, kAngleUnits,
-         "unit of angles; of latitude and longitude also ddmm (ddmm.mmmm) and e7 (1e-7 deg)");
+         "unit of angles; of latitude and longitude also ddmm (ddmm.mmmm), ddmmss (ddmmss.ss) and "
+         "e7 (1e-7 deg); auto: by their size and digits, else deg");
   f.text("height", height, kHeights, "what heights count from");
-  f.text("height_unit", height_unit, names_of(length_units()),
-         "unit of the height, or of east, north, up");
+  f.text("height_unit", height_unit, or_auto(length_units()),
+         "unit of the height, or of east, north, up or x, y, z; auto: m, or mm if they are whole "
+         "numbers above 20 000");
   f.optional_number("height_m", height_m, kAnyNumber,
                     "height of all rows of a table without one; gnss.sigma_m says how far off [m]");
   f.optional_number("geoid_separation_m", geoid_separation_m, kAnyNumber,
                     "ellipsoidal height = msl + this [m]");
-  f.section("origin", origin, "of a local frame east, north, up");
+  f.section("origin", origin, "of a local frame east, north, up or down");
   f.text("velocity_unit", velocity_unit, names_of(speed_units()),
          "unit of velocities, speed and their sigma");
 }
 
 void GnssMapping::fields(ConfigFields& f) {
   PositionMapping::fields(f);
+  f.text("bearing_unit", bearing_unit, or_auto(bearing_units()),
+         "unit of the bearing; e5: 1e-5 deg; auto: as the angles, or e5 if it is a whole number "
+         "mostly above 360");
   f.text("sigma_unit", sigma_unit, names_of(length_units()), "unit of the sigma columns");
-  f.numbers("sigma_m", sigma_m, kPositive, "north, east, down, where no column tells [m]");
+  f.numbers("sigma_m", sigma_m, kPositive,
+            "north, east, down, where no column tells, or a cell of it is blank or zero [m]");
   f.flag("velocity", velocity, "read the velocity columns");
   f.numbers("velocity_sigma_m_s", velocity_sigma_m_s, kPositive,
-            "north, east, down, where no column tells [m/s]");
+            "north, east, down, where no column tells, or a cell of it is blank or zero [m/s]");
   f.text("quality", quality, {"unknown", "single", "differential", "ppp", "float_rtk", "fixed_rtk"},
          "of all fixes, where no column tells");
   f.text_map("quality_table", quality_table, "value in the column: quality, or none");

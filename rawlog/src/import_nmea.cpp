@@ -28,7 +28,8 @@ class NmeaReader : public RecordReader {
       : epochs_(file.path, file.named),
         mapping_(mapping),
         offset_ns_(nanoseconds(mapping.time.offset_s)),
-        near_ns_(first_stamp(mapping, file)) {}
+        first_(first_of(mapping, file)),
+        near_ns_(first_.stamp_ns) {}
 
   const TextTable& table() const override { return epochs_.sentences().table(); }
   int64_t without_fix() const override { return epochs_.without_fix(); }
@@ -36,7 +37,8 @@ class NmeaReader : public RecordReader {
   std::optional<Record> next() override {
     while (const std::optional<NmeaEpoch> epoch = epochs_.next()) {
       near_ns_ = stamp_near(epoch->time_of_day_ns, epoch->dated_ns.value_or(near_ns_));
-      if (epoch->position) return fix_of(*epoch);
+      if (epoch->position) return fix_of(*epoch, *epoch->position);
+      if (first_.flat && epoch->flat) return flat_fix(*epoch, *epoch->flat);
     }
     return std::nullopt;
   }
@@ -50,6 +52,17 @@ class NmeaReader : public RecordReader {
                       "first in line {}",
                       table().path(), sentences.damaged(), sentences.sentences(),
                       sentences.first_damaged_line()));
+    }
+    if (sentences.unchecked()) {
+      found.push_back(
+          fmt::format("{}: no sentence has a checksum; all were taken, damaged ones cannot be told",
+                      table().path()));
+    }
+    if (first_.flat) {
+      found.push_back(
+          fmt::format("{}: no heights (RMC only, no GGA): {} m assumed, with a sigma of {} m; if "
+                      "known, give gnss.height_m and gnss.sigma_m: [north, east, down]",
+                      table().path(), mapping_.height_m.value_or(0), flat_sigma_down()));
     }
     if (!assumed_.empty()) {
       std::vector<std::string> parts;
@@ -77,10 +90,28 @@ class NmeaReader : public RecordReader {
   }
 
  private:
-  static int64_t first_stamp(const GnssMapping& mapping, const NmeaFile& file);
+  /// What is found before the file is read.
+  struct First {
+    int64_t stamp_ns = 0;  ///< of the first position
+    bool flat = false;     ///< there are positions of RMC only
+  };
+  static First first_of(const GnssMapping& mapping, const NmeaFile& file);
 
-  GnssFix fix_of(const NmeaEpoch& epoch) {
-    const NmeaPosition& position = *epoch.position;
+  double flat_sigma_down() const {
+    constexpr double kOpenHeight = 1000;  // [m]
+    return mapping_.sigma_m.size() == 3 ? mapping_.sigma_m[2] : kOpenHeight;
+  }
+
+  GnssFix flat_fix(const NmeaEpoch& epoch, NmeaPosition position) {
+    position.height = mapping_.height_m.value_or(0);
+    position.geoid_separation = 0;
+    GnssFix fix = fix_of(epoch, position);
+    const double sigma = flat_sigma_down();
+    fix.position_covariance(2, 2) = sigma * sigma;
+    return fix;
+  }
+
+  GnssFix fix_of(const NmeaEpoch& epoch, const NmeaPosition& position) {
     const Row& row = *epoch.row;
     GnssFix fix;
     fix.quality = position.quality;
@@ -90,7 +121,7 @@ class NmeaReader : public RecordReader {
     if (std::abs(fix.antenna.height) > kLargestHeight) {
       row.fail(fmt::format("{} m are no height; correct or remove the line", fix.antenna.height));
     }
-    fix.position_covariance = sigma(epoch).cwiseAbs2().asDiagonal();
+    fix.position_covariance = sigma(epoch, position).cwiseAbs2().asDiagonal();
     if (epoch.velocity && mapping_.velocity) add_velocity(fix, *epoch.velocity);
     fix.t_ns = checked_stamp(row, near_ns_ + offset_ns_);
     order_.check(row, fix.t_ns);
@@ -105,8 +136,8 @@ class NmeaReader : public RecordReader {
         "separation; 50 m off do no harm, 0 is allowed)");
   }
 
-  Eigen::Vector3d sigma(const NmeaEpoch& epoch) {
-    const Eigen::Vector3d found = epoch.sigma ? *epoch.sigma : sigma_by_hdop(*epoch.position);
+  Eigen::Vector3d sigma(const NmeaEpoch& epoch, const NmeaPosition& position) {
+    const Eigen::Vector3d found = epoch.sigma ? *epoch.sigma : sigma_by_hdop(position);
     if (!(found.minCoeff() > kSmallestSigma && found.maxCoeff() < kLargestSigma)) {
       epoch.row->fail(
           fmt::format("sigmas of the position of {} to {} m (GST or HDOP); remove the "
@@ -141,37 +172,60 @@ class NmeaReader : public RecordReader {
   NmeaEpochs epochs_;
   GnssMapping mapping_;
   int64_t offset_ns_;
+  First first_;
   int64_t near_ns_;  ///< a stamp within half a day of the next epoch
   StampOrder order_;
   std::set<FixQuality> assumed_;
   bool velocity_assumed_ = false;
 };
 
-/// The first epoch of the file, dated by the first RMC or ZDA beside a position.
-int64_t NmeaReader::first_stamp(const GnssMapping& mapping, const NmeaFile& file) {
-  NmeaEpochs epochs(file.path, file.named);
-  std::optional<int64_t> first_time_ns;
-  for (bool over = false; !over;) {
-    try {
-      const std::optional<NmeaEpoch> epoch = epochs.next();
-      over = !epoch;
-      if (over || !epoch->position) continue;
-      if (!first_time_ns) first_time_ns = epoch->time_of_day_ns;
-      if (epoch->dated_ns) return stamp_near(*first_time_ns, *epoch->dated_ns);
-    } catch (const RowError&) {
-      continue;  // comes again when the file is read
+/// The first epochs of a file with a position, with and without a height.
+struct FirstEpochs {
+  explicit FirstEpochs(const NmeaFile& file) : epochs(file.path, file.named) {}
+
+  /// Until there is a position with a height and a date beside one.
+  void scan() {
+    for (bool over = false; !over && !(position_ns && dated_ns);) {
+      try {
+        const std::optional<NmeaEpoch> epoch = epochs.next();
+        over = !epoch;
+        if (!over) take(*epoch);
+      } catch (const RowError&) {
+        continue;  // comes again when the file is read
+      }
     }
   }
-  if (!first_time_ns) {
-    throw DataError(fmt::format(
-        "'{}' has no position in NMEA: of {} sentences {} have a wrong checksum or none, {} GGA "
-        "are without a fix; give a file with GGA sentences",
-        file.named, epochs.sentences().sentences(), epochs.sentences().damaged(),
-        epochs.without_fix()));
+
+  NmeaEpochs epochs;
+  std::optional<int64_t> position_ns, flat_ns;  ///< times of day
+  std::optional<int64_t> dated_ns;
+
+ private:
+  void take(const NmeaEpoch& epoch) {
+    if (!epoch.position && !epoch.flat) return;
+    if (!flat_ns) flat_ns = epoch.time_of_day_ns;
+    if (epoch.position && !position_ns) position_ns = epoch.time_of_day_ns;
+    if (!dated_ns) dated_ns = epoch.dated_ns;
   }
+};
+
+/// Dated by the first RMC, ZDA or PUBX,04 beside a position.
+NmeaReader::First NmeaReader::first_of(const GnssMapping& mapping, const NmeaFile& file) {
+  FirstEpochs found(file);
+  found.scan();
+  if (!found.flat_ns) {
+    const NmeaSentences& sentences = found.epochs.sentences();
+    throw DataError(fmt::format(
+        "'{}' has no position in NMEA: of {} sentences {} have a wrong checksum or "
+        "none, {} GGA are without a fix; give a file with GGA sentences",
+        file.named, sentences.sentences(), sentences.damaged(), found.epochs.without_fix()));
+  }
+  const bool flat = !found.position_ns;
+  const int64_t first_ns = *found.flat_ns;
+  if (found.dated_ns) return {stamp_near(first_ns, *found.dated_ns), flat};
   const std::optional<int64_t> midnight = midnight_ns(mapping.time.date, "%Y-%m-%d");
-  if (midnight) return *midnight + *first_time_ns;
-  if (file.begins_ns) return stamp_near(*first_time_ns, *file.begins_ns);
+  if (midnight) return {*midnight + first_ns, flat};
+  if (file.begins_ns) return {stamp_near(first_ns, *file.begins_ns), flat};
   throw UsageError(
       fmt::format("'{}' has no date (RMC or ZDA); give gnss.time.date: YYYY-MM-DD, of its first "
                   "position, UTC",

@@ -49,6 +49,7 @@ struct PosHeader {
   std::optional<std::string> height;  ///< ellipsoidal | msl
   std::optional<Geodetic> base;       ///< "ref pos"
   std::optional<std::string> notice;
+  bool told = false;  ///< a line names the columns
 };
 
 constexpr size_t kTimeColumns = 2;
@@ -69,7 +70,7 @@ void set_columns(const std::vector<std::string_view>& names, PosHeader& header) 
 }
 
 std::vector<std::string_view> words(std::string_view line) {
-  constexpr const char* kBlanks = " \t\r,%";
+  constexpr const char* kBlanks = " \t\r,;%";
   std::vector<std::string_view> found;
   size_t begin = line.find_first_not_of(kBlanks);
   while (begin != std::string_view::npos) {
@@ -83,9 +84,13 @@ std::vector<std::string_view> words(std::string_view line) {
 /// "%  GPST   latitude(deg) longitude(deg) ...": the time takes two columns in the rows.
 void parse_names(std::string_view line, PosHeader& header) {
   std::vector<std::string_view> names = words(line);
-  header.utc = names[0] == "UTC" || names[0] == "JST";
-  if (names[0] == "JST") header.zone_ns = 9 * kSecondsPerHour * kNanosecondsPerSecond;
+  const bool japan = names[0] == "JST";
+  header.utc = names[0] == "UTC" || japan;
+  header.zone_ns = japan ? 9 * kSecondsPerHour * kNanosecondsPerSecond : 0;
   names.erase(names.begin());
+  header.columns.clear();
+  header.dms = false;
+  header.told = true;
   set_columns(names, header);
 }
 
@@ -112,38 +117,76 @@ bool contains(std::string_view text, std::string_view part) {
   return text.find(part) != std::string_view::npos;
 }
 
+bool is_given(const OriginMapping& origin) {
+  return origin.latitude_deg && origin.longitude_deg && origin.height_m;
+}
+
+/// Of a file without a header.
+[[noreturn]] void fail_without_columns(const std::string& path, const Row& row) {
+  if (!row.text(0).empty() && row.text(0).front() == '$') {
+    throw DataError(
+        fmt::format("'{}' is no .pos file of columns but NMEA; use 'import nmea'", path));
+  }
+  throw DataError(
+      fmt::format("'{}' has no header line with the names of the columns, and not the 15 or 24 "
+                  "columns that RTKLIB writes; export with lat/lon/height in degrees and with "
+                  "a header, or use 'import csv'",
+                  path));
+}
+
+/// What a row without a header may be.
+enum class Assumed { degrees, dms, ecef, baseline };
+
+Assumed assumed_positions(const std::string& path, const Row& row, bool dms, bool origin) {
+  constexpr double kMostDegrees = 720;
+  constexpr double kNearest = 6e6;
+  if (dms) return Assumed::dms;
+  const double x = row.number(kTimeColumns);
+  const double y = row.number(kTimeColumns + 1);
+  const double z = row.number(kTimeColumns + 2);
+  if (std::hypot(x, y, z) > kNearest) return Assumed::ecef;
+  if (origin) return Assumed::baseline;
+  if (std::abs(x) + std::abs(y) <= kMostDegrees) return Assumed::degrees;
+  throw DataError(
+      fmt::format("'{}' has no header, and its positions are neither degrees nor ECEF; if they are "
+                  "a baseline (east, north, up), give gnss.origin latitude_deg, longitude_deg and "
+                  "height_m of the base, else export with lat/lon/height",
+                  path));
+}
+
 /// The order in which RTKLIB writes its columns, told by their number.
-void assume_columns(const std::string& path, const Row& row, PosHeader& header) {
+void assume_columns(const std::string& path, const Row& row, bool origin, PosHeader& header) {
   constexpr size_t kDegrees = 15;
   constexpr size_t kVelocity = 9;
   constexpr size_t kDms = kDegrees + 2 * (kDmsColumns - 1);
   const size_t size = row.size();
   const bool dms = size == kDms || size == kDms + kVelocity;
-  if (!dms && size != kDegrees && size != kDegrees + kVelocity) {
-    throw DataError(
-        fmt::format("'{}' has no header line with the names of the columns, and not the 15 or 24 "
-                    "columns that RTKLIB writes; export with lat/lon/height in degrees and with "
-                    "a header, or use 'import csv'",
-                    path));
-  }
-  const bool ecef =
-      !dms && std::abs(row.number(kTimeColumns)) + std::abs(row.number(kTimeColumns + 1)) > 720;
-  std::vector<std::string_view> names = words(
-      ecef  ? "x-ecef y-ecef z-ecef Q ns sdx sdy sdz sdxy sdyz sdzx age ratio "
-              "vx vy vz sdvx sdvy sdvz sdvxy sdvyz sdvzx"
-      : dms ? "latitude(d'\") longitude(d'\") height Q ns sdn sde sdu sdne sdeu sdun age ratio "
-              "vn ve vu sdvn sdve sdvu sdvne sdveu sdvun"
-            : "latitude longitude height Q ns sdn sde sdu sdne sdeu sdun age ratio "
-              "vn ve vu sdvn sdve sdvu sdvne sdveu sdvun");
+  if (!dms && size != kDegrees && size != kDegrees + kVelocity) fail_without_columns(path, row);
+  static const std::map<Assumed, std::array<const char*, 2>> kNames{
+      {Assumed::degrees,
+       {"lat/lon/height in degrees (if they are a baseline east, north, up, give gnss.origin)",
+        "latitude longitude height Q ns sdn sde sdu sdne sdeu sdun age ratio "
+        "vn ve vu sdvn sdve sdvu sdvne sdveu sdvun"}},
+      {Assumed::dms,
+       {"lat/lon/height in degrees, minutes, seconds",
+        "latitude(d'\") longitude(d'\") height Q ns sdn sde sdu sdne sdeu sdun age ratio "
+        "vn ve vu sdvn sdve sdvu sdvne sdveu sdvun"}},
+      {Assumed::ecef,
+       {"x/y/z-ecef",
+        "x-ecef y-ecef z-ecef Q ns sdx sdy sdz sdxy sdyz sdzx age ratio "
+        "vx vy vz sdvx sdvy sdvz sdvxy sdvyz sdvzx"}},
+      {Assumed::baseline,
+       {"a baseline east, north, up from gnss.origin",
+        "e-baseline n-baseline u-baseline Q ns sde sdn sdu sden sdnu sdue age ratio "
+        "ve vn vu sdve sdvn sdvu sdven sdvnu sdvue"}}};
+  const auto& [what, columns] = kNames.at(assumed_positions(path, row, dms, origin));
+  std::vector<std::string_view> names = words(columns);
   if (size < kDegrees + kVelocity) names.resize(names.size() - kVelocity);
   set_columns(names, header);
   header.notice = fmt::format(
       "'{}' has no header: read as RTKLIB's {} in GPS time; if its clock was UTC, give "
       "gnss.time.offset_s (18 since 2017)",
-      path,
-      ecef  ? "x/y/z-ecef"
-      : dms ? "lat/lon/height in degrees, minutes, seconds"
-            : "lat/lon/height in degrees");
+      path, what);
 }
 
 void read_comment(std::string_view line, PosHeader& header) {
@@ -155,21 +198,44 @@ void read_comment(std::string_view line, PosHeader& header) {
   }
 }
 
-PosHeader read_header(const std::string& path) {
-  TextTable table(path, TextTable::Separator::space_or_comma, "");
-  PosHeader header;
-  while (const std::optional<std::string_view> line = table.next_line()) {
-    if (line->empty()) continue;
-    if (line->front() != '%') break;
-    read_comment(*line, header);
+/// The rows of a file, and the header: what its comments say up to them.
+class PosRows {
+ public:
+  explicit PosRows(const std::string& path)
+      : table_(path, TextTable::Separator::space_or_comma, "") {}
+
+  /// The next row; none at the end. Columns may be separated by semicolons, too.
+  const Row* next() {
+    while (const std::optional<std::string_view> line = table_.next_line()) {
+      const size_t begin = line->find_first_not_of(" \t\r");
+      if (begin == std::string_view::npos) continue;
+      if ((*line)[begin] == '%') {
+        read_comment(*line, header_);
+        continue;
+      }
+      line_ = *line;
+      std::replace(line_.begin(), line_.end(), ';', ' ');
+      return &table_.split(line_);
+    }
+    return nullptr;
   }
-  if (header.layout == nullptr) {
-    TextTable rows(path, TextTable::Separator::space_or_comma, "%");
-    const Row* row = rows.next();
-    if (row == nullptr) throw DataError(fmt::format("'{}' has no solution in it", path));
-    assume_columns(path, *row, header);
-  }
-  if (header.layout->positions != Positions::geodetic) header.height = "ellipsoidal";
+
+  const TextTable& table() const { return table_; }
+  PosHeader& header() { return header_; }
+
+ private:
+  TextTable table_;
+  PosHeader header_;
+  std::string line_;
+};
+
+/// The header of a file without one, by its first row. Throws DataError if there is no row.
+PosHeader first_header(const std::string& path, bool origin) {
+  PosRows rows(path);
+  const Row* row = rows.next();
+  if (row == nullptr) throw DataError(fmt::format("'{}' has no solution in it", path));
+  PosHeader& header = rows.header();
+  if (!header.told) assume_columns(path, *row, origin, header);
   return header;
 }
 
@@ -238,7 +304,7 @@ FixQuality quality_of(int64_t q, const Row& row) {
 std::optional<geodesy::LocalFrame> base_frame(const PosHeader& header, const OriginMapping& origin,
                                               const std::string& path) {
   if (header.layout->positions != Positions::baseline) return std::nullopt;
-  if (origin.latitude_deg && origin.longitude_deg && origin.height_m) {
+  if (is_given(origin)) {
     return geodesy::LocalFrame(
         {*origin.latitude_deg * kDegree, *origin.longitude_deg * kDegree, *origin.height_m});
   }
@@ -253,33 +319,21 @@ std::optional<geodesy::LocalFrame> base_frame(const PosHeader& header, const Ori
 class PosReader : public rawlog::RecordReader {
  public:
   PosReader(const GnssMapping& mapping, const std::string& path)
-      : table_(path, TextTable::Separator::space_or_comma, "%"),
-        header_(read_header(path)),
-        height_offset_(rawlog::height_offset(header_.height.value_or(mapping.height),
-                                             mapping.geoid_separation_m, "gnss")),
-        base_(base_frame(header_, mapping.origin, path)),
-        offset_ns_(nanoseconds(mapping.time.offset_s)),
-        velocity_(mapping.velocity && has_all("v")) {
-    for (const char* name : header_.layout->names) column(name);
-    for (const char axis : header_.layout->axes) column(std::string("sd") + axis);
-    if (!velocity_ || has_all("sdv")) return;
-    if (mapping.velocity_sigma_m_s.size() != 3) {
-      throw UsageError(
-          fmt::format("'{}' has velocities without sigmas; give "
-                      "gnss.velocity_sigma_m_s: [north, east, down] or velocity: false",
-                      path));
-    }
-    velocity_sigma_ = Eigen::Vector3d(mapping.velocity_sigma_m_s.data());
+      : rows_(path), mapping_(mapping), offset_ns_(nanoseconds(mapping.time.offset_s)) {
+    rows_.header() = first_header(path, is_given(mapping.origin));
+    if (mapping.sigma_m.size() == 3) sigma_ = Eigen::Vector3d(mapping.sigma_m.data());
+    follow_header();
   }
 
-  const TextTable& table() const override { return table_; }
+  const TextTable& table() const override { return rows_.table(); }
   int64_t without_fix() const override { return without_fix_; }
   std::vector<std::string> notices() const override {
     return header_.notice ? std::vector{*header_.notice} : std::vector<std::string>{};
   }
 
   std::optional<Record> next() override {
-    while (const Row* row = table_.next()) {
+    while (const Row* row = rows_.next()) {
+      if (rows_.header().told) follow_header();
       if (columns_ == 0) columns_ = row->size();
       if (row->size() != columns_) {
         row->fail(fmt::format("{} columns, {} expected; correct or remove the row", row->size(),
@@ -293,6 +347,29 @@ class PosReader : public rawlog::RecordReader {
   }
 
  private:
+  /// As the lines before the row say, where files were joined in their middle, too.
+  void follow_header() {
+    rows_.header().told = false;
+    header_ = rows_.header();
+    const bool geodetic = header_.layout->positions == Positions::geodetic;
+    const std::string height =
+        geodetic ? header_.height.value_or(mapping_.height) : std::string("ellipsoidal");
+    height_offset_ = rawlog::height_offset(height, mapping_.geoid_separation_m, "gnss");
+    base_ = base_frame(header_, mapping_.origin, table().path());
+    velocity_ = mapping_.velocity && has_all("v");
+    columns_ = 0;
+    for (const char* name : header_.layout->names) column(name);
+    for (const char axis : header_.layout->axes) column(std::string("sd") + axis);
+    if (!velocity_ || has_all("sdv")) return;
+    if (mapping_.velocity_sigma_m_s.size() != 3) {
+      throw UsageError(
+          fmt::format("'{}' has velocities without sigmas; give "
+                      "gnss.velocity_sigma_m_s: [north, east, down] or velocity: false",
+                      table().path()));
+    }
+    velocity_sigma_ = Eigen::Vector3d(mapping_.velocity_sigma_m_s.data());
+  }
+
   bool has(const std::string& name) const { return header_.columns.count(name) > 0; }
 
   /// Of all three axes.
@@ -305,7 +382,7 @@ class PosReader : public rawlog::RecordReader {
     const auto found = header_.columns.find(name);
     if (found != header_.columns.end()) return found->second;
     throw DataError(
-        fmt::format("'{}' has no column '{}'; export it with RTKLIB", table_.path(), name));
+        fmt::format("'{}' has no column '{}'; export it with RTKLIB", table().path(), name));
   }
 
   int64_t stamp(const Row& row) const {
@@ -375,6 +452,7 @@ class PosReader : public rawlog::RecordReader {
   Geodetic position(const Row& row) const {
     const auto& names = header_.layout->names;
     if (header_.layout->positions == Positions::geodetic) {
+      check_degrees(row);
       return checked_position(row, angle(row, column(names[0])), angle(row, column(names[1])),
                               row.number(column(names[2])) + height_offset_);
     }
@@ -389,6 +467,18 @@ class PosReader : public rawlog::RecordReader {
                       names[0], p.x(), names[1], p.y(), names[2], p.z()));
     }
     return base_ ? base_->to_geodetic({p.y(), p.x(), -p.z()}) : geodesy::wgs84::ecef_to_geodetic(p);
+  }
+
+  /// Without a header, a baseline of up to 90 m looks like degrees.
+  void check_degrees(const Row& row) const {
+    constexpr double kPole = 90;
+    const double latitude = row.number(column("latitude"));
+    if (!header_.notice || std::abs(latitude) <= kPole) return;
+    row.fail(fmt::format(
+        "latitude {:.4f} is no place on Earth; the file has no header: if its positions "
+        "are a baseline (east, north, up), give gnss.origin latitude_deg, longitude_deg "
+        "and height_m of the base, else correct or remove the row",
+        latitude));
   }
 
   double angle(const Row& row, size_t first) const {
@@ -412,7 +502,7 @@ class PosReader : public rawlog::RecordReader {
     fix.quality = q < 0 ? FixQuality::unknown : quality_of(q, row);
     fix.antenna = position(row);
     const Eigen::Matrix3d R = to_ned(fix.antenna);
-    fix.position_covariance = R * covariance(row, "sd") * R.transpose();
+    fix.position_covariance = position_covariance(row, R);
     if (velocity_) {
       fix.velocity_n = R * along_axes(row, "v");
       fix.velocity_covariance = velocity_sigma_
@@ -425,6 +515,15 @@ class PosReader : public rawlog::RecordReader {
     return fix;
   }
 
+  /// Along north, east, down; sigmas that are all zero were rounded.
+  Eigen::Matrix3d position_covariance(const Row& row, const Eigen::Matrix3d& R) const {
+    if (!along_axes(row, "sd").isZero(0)) return R * covariance(row, "sd") * R.transpose();
+    if (sigma_) return sigma_->cwiseAbs2().asDiagonal();
+    row.fail(
+        "its sigmas are zero; give gnss.sigma_m: [north, east, down] for rows like this, or "
+        "correct or remove the row");
+  }
+
   /// Zero: not told.
   FixDetails details(const Row& row) const {
     FixDetails details;
@@ -435,13 +534,14 @@ class PosReader : public rawlog::RecordReader {
     return details;
   }
 
-  TextTable table_;
-  PosHeader header_;
-  double height_offset_;
+  PosRows rows_;
+  PosHeader header_;  ///< of the rows that are read
+  GnssMapping mapping_;
+  double height_offset_ = 0;
   std::optional<geodesy::LocalFrame> base_;
   int64_t offset_ns_;
-  bool velocity_;
-  std::optional<Eigen::Vector3d> velocity_sigma_;
+  bool velocity_ = false;
+  std::optional<Eigen::Vector3d> sigma_, velocity_sigma_;
   size_t columns_ = 0;
   rawlog::StampOrder order_;
   int64_t without_fix_ = 0;

@@ -332,6 +332,15 @@ class UlogReader : public RecordReader {
   const InputFile& table() const override { return file_.file(); }
 
  protected:
+  /// One of the two readers of a log tells it.
+  std::vector<std::string> damage() const {
+    if (file_.unreadable() == 0) return {};
+    return {
+        fmt::format("{}: {} bytes are no messages of a ULog and were left out, with what they "
+                    "were; the file is damaged there, copy it again",
+                    file_.file().place(file_.first_unreadable()), file_.unreadable())};
+  }
+
   std::optional<UlogMessage> next_message() {
     while (std::optional<UlogMessage> message = file_.next()) {
       const UlogTopic& topic = message->topic();
@@ -360,6 +369,8 @@ class UlogReader : public RecordReader {
 class UlogImu : public UlogReader {
  public:
   using UlogReader::UlogReader;
+
+  std::vector<std::string> notices() const override { return damage(); }
 
   std::optional<Record> next() override {
     const std::optional<UlogMessage> message = next_message();

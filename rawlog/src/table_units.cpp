@@ -32,6 +32,11 @@ const Units& speed_units() {
   return units;
 }
 
+const Units& bearing_units() {
+  static const Units units{{"deg", kDegree}, {"rad", 1}, {"e5", 1e-5 * kDegree}};
+  return units;
+}
+
 std::vector<std::string> names_of(const Units& units) {
   std::vector<std::string> names;
   for (const Unit& unit : units) names.emplace_back(unit.name);

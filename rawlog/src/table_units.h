@@ -19,6 +19,7 @@ const Units& rate_units();          ///< of angular rates
 const Units& acceleration_units();  ///< of specific forces
 const Units& length_units();
 const Units& speed_units();
+const Units& bearing_units();
 
 std::vector<std::string> names_of(const Units& units);
 

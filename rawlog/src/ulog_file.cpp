@@ -163,9 +163,19 @@ void UlogFile::define(char type) {
       topics_.erase(cursor.get<uint16_t>());
       break;
     }
-    default:  // information, texts, synchronization, dropouts: holes show in the stamps
+    default:
+      pass_over(type);
       break;
   }
+}
+
+/// Information, texts, synchronization and dropouts (holes show in the stamps); another kind is
+/// damage, from which the lengths of messages lead back to whole ones by chance.
+void UlogFile::pass_over(char type) {
+  static constexpr std::string_view kKnown = "IMQLCSO";
+  if (kKnown.find(type) != std::string_view::npos) return;
+  if (unreadable_ == 0) first_unreadable_ = file_.position();
+  unreadable_ += static_cast<int64_t>(kMessageHeader + body_.size());
 }
 
 void UlogFile::define_flags() {

@@ -59,6 +59,9 @@ class UlogFile {
   std::optional<UlogMessage> next();
 
   const InputFile& file() const { return file_; }
+  /// Bytes of messages of no known kind, and where the first of them begins.
+  int64_t unreadable() const { return unreadable_; }
+  int64_t first_unreadable() const { return first_unreadable_; }
   /// Parameters so far, as they were at the start.
   const std::map<std::string, double>& parameters() const { return parameters_; }
 
@@ -72,6 +75,7 @@ class UlogFile {
   bool read_message(char& type);
   bool enter_appended(uint64_t count);
   void define(char type);
+  void pass_over(char type);
   void define_flags();
   void define_format();
   void define_parameter();
@@ -88,6 +92,7 @@ class UlogFile {
   std::map<std::string, size_t> sizes_;  ///< of formats that were needed [bytes]
   std::map<uint16_t, UlogTopic> topics_;
   std::map<std::string, double> parameters_;
+  int64_t unreadable_ = 0, first_unreadable_ = 0;
 };
 
 }  // namespace foucault::rawlog

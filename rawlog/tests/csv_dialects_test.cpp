@@ -419,14 +419,14 @@ TEST_F(Dialects, DegreesAndMinutes) {
   gnss("t,lat,lon,h\n100.01,4730.0,-815.0,400.5\n");
   run("", ddmm);
   expect_plain();
-  EXPECT_THAT(error_of<DataError>([&] { run(); }), HasSubstr("give gnss.angle_unit: ddmm"));
+  EXPECT_THAT(error_of<DataError>([&] { run("", std::string(kTime) + "  angle_unit: deg\n"); }),
+              HasSubstr("give gnss.angle_unit: ddmm"));
   gnss("t,lat,ns,lon,ew,h\n100.01,4730.0,N,00815.0,W,400.5\n");
   const std::string letters = "height: h, latitude_hemisphere: ns, longitude_hemisphere: ew";
   run("", ddmm, letters);
   expect_plain();
-  gnss("t,lat,ns,lon,ew,h\n100.01,4730.0,n,00815.0,W,400.5\n");
-  EXPECT_THAT(error_of<DataError>([&] { run("", ddmm, letters); }),
-              HasSubstr("none of N, S, E, W"));
+  gnss("t,lat,ns,lon,ew,h\n100.01,4730.0,X,00815.0,W,400.5\n");
+  EXPECT_THAT(error_of<DataError>([&] { run("", ddmm, letters); }), HasSubstr("none of N, S"));
   gnss("t,lat,lon,h\n100.01,4761.0,-815.0,400.5\n");
   EXPECT_THAT(error_of<DataError>([&] { run("", ddmm); }), HasSubstr("minutes 61"));
 }

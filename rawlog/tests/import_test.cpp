@@ -429,9 +429,10 @@ TEST_F(Csv, ZeroSigmasNameTheKeyForUnknownOnes) {
   std::string columns = kGnss;
   columns.replace(columns.find("height: h"), 9,
                   "height: h, sigma_horizontal: s, sigma_vertical: v");
+  columns.erase(columns.find("  sigma_m"));
   EXPECT_THAT(error<DataError>(kImu + columns),
-              AllOf(HasSubstr("gnss.csv:2: the sigma in column 6 is 0"),
-                    HasSubstr("leave the columns out and give gnss.sigma_m")));
+              AllOf(HasSubstr("gnss.csv:2: the sigma in column 6 is '0'"),
+                    HasSubstr("give gnss.sigma_m"), HasSubstr("leave the columns out")));
 }
 
 /// A thousand rows at 100 Hz, some of them stamped ahead.
@@ -693,6 +694,46 @@ TEST_F(RtklibFormats, WithoutAHeaderTheOrderIsANotice) {
   EXPECT_THAT(error_of<DataError>([&] { import_rtklib(rtklib_); }), HasSubstr("no solution in it"));
 }
 
+/// Of a file that was joined: the second says UTC, 18 s later on the same clock face.
+TEST_F(RtklibFormats, AHeaderInTheMiddleCountsFromThere) {
+  fix_of(std::string("%  GPST ") + kRtklibDegreesHeader + "2023/01/08 10:00:01.000" +
+         kRtklibDegrees + "%  UTC " + kRtklibDegreesHeader + "2023/01/08 09:59:44.000" +
+         kRtklibDegrees);
+  const auto fixes = all<GnssFix>(rtklib_.out);
+  ASSERT_EQ(fixes.size(), 2U);
+  EXPECT_EQ(fixes[0].t_ns, gps_to_unix_ns(2244, 36001));
+  EXPECT_EQ(fixes[1].t_ns, gps_to_unix_ns(2244, 36002));
+}
+
+TEST_F(RtklibFormats, Semicolons) {
+  const GnssFix fix = fix_of(
+      "%  GPST;latitude(deg);longitude(deg);height(m);Q;ns;sdn(m);sde(m);sdu(m)\n"
+      "2023/01/08 10:00:01.000;48.780782850;9.173350701;319.9867;2;6;0.4908;0.3184;1.1401\n");
+  EXPECT_EQ(fix.t_ns, gps_to_unix_ns(2244, 36001));
+  EXPECT_NEAR(fix.antenna.longitude / kDegree, 9.173350701, 1e-12);
+}
+
+TEST_F(RtklibFormats, ABaselineWithoutAHeader) {
+  const std::string rest = " 1 9 0.01 0.02 0.03 0 0 0 0.0 9.9\n";
+  for (const char* place : {"1200 40 5", "95 30 5"}) {
+    scratch_.text_file("a.pos", std::string("2244 36001.00 ") + place + rest);
+    EXPECT_THAT(error_of<DataError>([&] { import_rtklib(rtklib_); }),
+                AllOf(HasSubstr("no header"), HasSubstr("gnss.origin")));
+  }
+  scratch_.text_file(
+      "mapping.yaml",
+      std::string(kImu) + "gnss:\n  origin: {latitude_deg: 49, longitude_deg: 8, height_m: 100}\n");
+  const geodesy::LocalFrame frame({49 * kDegree, 8 * kDegree, 100});
+  const GnssFix fix = fix_of("2244 36001.00 30 40 5" + rest);
+  EXPECT_LT((frame.to_local(fix.antenna) - Eigen::Vector3d(40, 30, -5)).norm(), 1e-6);
+  EXPECT_NEAR(std::sqrt(fix.position_covariance(1, 1)), 0.01, 1e-6);
+}
+
+TEST_F(RtklibFormats, NmeaUnderThisNameIsTold) {
+  scratch_.text_file("a.pos", "$GPGGA,100001.00,4730.0,N,00815.0,E,1,9,1,400,M,47,M,,*00\n");
+  EXPECT_THAT(error_of<DataError>([&] { import_rtklib(rtklib_); }), HasSubstr("'import nmea'"));
+}
+
 TEST_F(RtklibFormats, SouthAndWestOfZeroDegrees) {
   const GnssFix fix = fix_of(
       "%  GPST   latitude(d'\")   longitude(d'\")  height(m)   Q  ns   sdn(m)   sde(m)   sdu(m)\n"
@@ -743,7 +784,11 @@ TEST_F(RtklibFormats, DigitsThatRtklibLost) {
   EXPECT_NEAR(fix.position_covariance(0, 1), -0.0025 * 0.0025, 1e-9);
   scratch_.text_file("a.pos", header + "0 0 0 0 0 0\n");
   EXPECT_THAT(error_of<DataError>([&] { import_rtklib(rtklib_); }),
-              HasSubstr("must be greater than zero"));
+              AllOf(HasSubstr("sigmas are zero"), HasSubstr("gnss.sigma_m")));
+  scratch_.text_file("mapping.yaml", std::string(kImu) + "gnss: {sigma_m: [1, 2, 3]}\n");
+  const Eigen::Vector3d told =
+      fix_of(header + "0 0 0 0 0 0\n").position_covariance.diagonal().cwiseSqrt();
+  EXPECT_LT((told - Eigen::Vector3d(1, 2, 3)).norm(), 1e-6);
 }
 
 TEST_F(RtklibFormats, PlacesAndWeeksThatDoNotExist) {

@@ -211,6 +211,75 @@ TEST_F(Nmea, WithoutAFixThereIsNone) {
   EXPECT_EQ(summary.gnss.without_fix, 3);
 }
 
+TEST_F(Nmea, GnsCountsAsGga) {
+  const std::string rest = ",12,0.5,400.25,47.5,1.0,0000";
+  const auto gns = [&](const std::string& modes) {
+    return sentence("GNGNS,120000.00,4730.0000,N,00815.0000,W," + modes + rest);
+  };
+  for (const auto& [modes, quality] :
+       {std::pair{"RRNN", FixQuality::fixed_rtk}, std::pair{"ANF", FixQuality::float_rtk},
+        std::pair{"AD", FixQuality::differential}, std::pair{"AA", FixQuality::single}}) {
+    const GnssFix fix = fixes(gns(modes) + rmc("120000.00", "070224")).at(0);
+    EXPECT_EQ(fix.quality, quality) << modes;
+    EXPECT_DOUBLE_EQ(fix.antenna.height, 447.75);
+    EXPECT_EQ(fix.details.satellites, 12);
+    EXPECT_EQ(fix.details.correction_age, 1);
+  }
+  const ImportSummary summary = import(gns("NNE") + gga("120001.00") + rmc("120001.00", "070224"));
+  EXPECT_EQ(summary.gnss.without_fix, 1);
+  EXPECT_EQ(summary.gnss.written, 1);
+}
+
+/// u-blox's own: above the ellipsoid, hAcc of both axes together, km/h; its date comes apart.
+TEST_F(Nmea, PubxAlone) {
+  const auto pubx = [](const std::string& time, const std::string& status) {
+    return sentence("PUBX,00," + time + ",4730.0000,N,00815.0000,W,447.75," + status +
+                    ",1.5,2.5,36.0,90.0,0.0,,0.9,1.2,0.8,9,0,0");
+  };
+  EXPECT_THAT(error<UsageError>(pubx("120000.00", "G3")), HasSubstr("gnss.time.date"));
+  const auto found = fixes(pubx("120000.00", "G3") +
+                           sentence("PUBX,04,120000.00,070224,302400.00,2300,18,1,1.0,21") +
+                           pubx("120001.00", "DR"));
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].t_ns, kNoon);
+  EXPECT_DOUBLE_EQ(found[0].antenna.height, 447.75);
+  EXPECT_EQ(found[0].details.satellites, 9);
+  const Eigen::Vector3d sigma = found[0].position_covariance.diagonal().cwiseSqrt();
+  EXPECT_LT((sigma - Eigen::Vector3d(1.5 / std::sqrt(2.0), 1.5 / std::sqrt(2.0), 2.5)).norm(),
+            1e-6);
+  EXPECT_LT((*found[0].velocity_n - Eigen::Vector3d(0, 10, 0)).norm(), 1e-9);
+}
+
+TEST_F(Nmea, RmcAloneHasNoHeight) {
+  const std::string text = rmc("120000.00", "070224") + rmc("120001.00", "070224");
+  const ImportSummary summary = import(text);
+  EXPECT_EQ(summary.gnss.written, 2);
+  EXPECT_THAT(summary.gnss.notices, Contains(AllOf(HasSubstr("no heights"), HasSubstr("1000 m"),
+                                                   HasSubstr("gnss.height_m"))));
+  const GnssFix fix = fixes(text).at(0);
+  EXPECT_EQ(fix.t_ns, kNoon);
+  EXPECT_NEAR(fix.antenna.longitude / kDegree, -8.25, 1e-12);
+  EXPECT_EQ(fix.antenna.height, 0);
+  EXPECT_NEAR(std::sqrt(fix.position_covariance(2, 2)), 1000, 1e-3);
+  mapping("gnss: {height_m: 450, sigma_m: [1, 2, 5]}\n");
+  EXPECT_EQ(fixes(text).at(0).antenna.height, 450);
+  EXPECT_NEAR(std::sqrt(fixes(text).at(0).position_covariance(2, 2)), 5, 1e-6);
+  // One GGA, and RMC is no position.
+  EXPECT_EQ(import(text + gga("120002.00")).gnss.written, 1);
+}
+
+TEST_F(Nmea, WithoutAnyChecksumAllAreTaken) {
+  std::string text = gga("120000.00") + rmc("120000.00", "070224") + gga("120001.00");
+  const std::string right = text;
+  for (size_t at = text.find('*'); at != std::string::npos; at = text.find('*')) text.erase(at, 3);
+  const ImportSummary summary = import(text);
+  EXPECT_EQ(summary.gnss.written, 2);
+  EXPECT_THAT(summary.gnss.notices, Contains(HasSubstr("no sentence has a checksum")));
+  std::string one = right;
+  one.erase(one.find('*'), 3);  // then it is damaged
+  EXPECT_EQ(import(one).gnss.written, 1);
+}
+
 TEST_F(Nmea, TheSeparationMayComeFromTheMapping) {
   const std::string text =
       sentence("GPGGA,120000.00,4730.0000,N,00815.0000,W,1,09,2.0,400.25,M,,M,,") +
@@ -248,7 +317,7 @@ TEST_F(Nmea, BadSentencesStopWithFileAndLine) {
 
 TEST_F(Nmea, WhatIsNoNmeaIsSaid) {
   EXPECT_THAT(error<DataError>("time,lat,lon\n1,2,3\n"), HasSubstr("no position in NMEA"));
-  EXPECT_THAT(error<DataError>("$GPGGA,120000.00,4730.0,N,00815.0,W,1,09,2.0,400,M,47,M,,\n"),
+  EXPECT_THAT(error<DataError>("$GPGGA,120000.00,4730.0,N,00815.0,W,1,09,2.0,400,M,47,M,,*00\n"),
               HasSubstr("of 1 sentences 1 have a wrong checksum or none"));
   options_.mapping.clear();
   options_.imu = scratch_.path("imu.csv");

@@ -241,10 +241,25 @@ TEST_F(Ulog, OtherMessagesAreLeftOut) {
   begin();
   log_.message('O', packed(uint16_t{30}));  // a dropout of 30 ms
   log_.message('S', std::string(8, 'x'));
-  log_.message('Z', "of the future");
   fix(kBoot + 51'000, kUtc + 50'000);
   increments(50);
-  EXPECT_EQ(import().imu.written, 50);
+  const ImportSummary summary = import();
+  EXPECT_EQ(summary.imu.written, 50);
+  EXPECT_TRUE(summary.imu.notices.empty());
+}
+
+TEST_F(Ulog, BytesThatAreNoMessagesAreTold) {
+  begin();
+  fix(kBoot + 51'000, kUtc + 50'000);
+  increments(50);
+  const size_t byte = log_.bytes.size();
+  log_.bytes += std::string(3000, '\0');
+  increment(kBoot + 5000 * 51);
+  const ImportSummary summary = import();
+  EXPECT_EQ(summary.imu.written, 51);
+  EXPECT_THAT(summary.imu.notices,
+              ::testing::ElementsAre(HasSubstr("log.ulg: byte " + std::to_string(byte) +
+                                               ": 3000 bytes are no messages")));
 }
 
 TEST_F(Ulog, LeverArmOfTheParameters) {

@@ -52,7 +52,8 @@ class ImuMapping : public TableMapping {
   std::string gyro_unit = "auto";
   /// auto (by gravity, else m_s2) | m_s2 | g (9.80665 m/s^2) | mg | cm_s2, or increments m_s
   std::string accel_unit = "auto";
-  double gyro_scale = 1;            ///< value in the column times this is in gyro_unit
+  std::string counts = "auto";  ///< auto | decimal | uint16 | hex
+  double gyro_scale = 1;        ///< value in the column times this is in gyro_unit
   double accel_scale = 1;
   std::string wheel_speed_unit = "m_s";
   /// -1: at rest the axis that looks up shows -1 g, as phones have it (CoreMotion).
@@ -79,14 +80,15 @@ class OriginMapping : public Configurable {
   void fields(ConfigFields& f) override;
 };
 
-/// Positions. Roles: time, date, week; latitude, longitude, height, or east, north, up with
-/// `origin`; latitude_minutes, latitude_seconds, latitude_hemisphere (N or S), and those of the
-/// longitude (E or W).
+/// Positions. Roles: time, date, week; latitude, longitude, height, or east, north, up or down with
+/// `origin`, or x, y, z of the Earth-fixed frame (ECEF); latitude_minutes, latitude_seconds,
+/// latitude_hemisphere (N or S), and those of the longitude (E or W).
 class PositionMapping : public TableMapping {
  public:
-  std::string angle_unit = "deg";            ///< deg | rad; of latitude, longitude: ddmm | e7 too
+  /// auto (by the data, else deg) | deg | rad; of latitude, longitude: ddmm | ddmmss | e7 too
+  std::string angle_unit = "auto";
   std::string height = "ellipsoidal";        ///< ellipsoidal | msl
-  std::string height_unit = "m";             ///< of the height, or of east, north, up
+  std::string height_unit = "auto";          ///< of the height, or of a frame's three columns
   std::optional<double> height_m;            ///< for tables without a height
   std::optional<double> geoid_separation_m;  ///< ellipsoidal height = msl + this
   OriginMapping origin;
@@ -95,15 +97,17 @@ class PositionMapping : public TableMapping {
   void fields(ConfigFields& f) override;
 };
 
-/// More roles: sigma_north, sigma_east, sigma_down, or sigma_horizontal, sigma_vertical;
-/// velocity_north, velocity_east, velocity_down, or speed, bearing [deg]; sigma_velocity; quality;
+/// More roles: sigma_north, sigma_east, sigma_down, or sigma_horizontal, sigma_vertical, or
+/// sigma_x, sigma_y, sigma_z; velocity_north, velocity_east, velocity_down or velocity_up, or
+/// velocity_x, velocity_y, velocity_z, or speed, bearing; sigma_velocity; quality;
 /// satellites, hdop, correction_age [s].
 class GnssMapping : public PositionMapping {
  public:
+  std::string bearing_unit = "auto";       ///< auto (as angle_unit) | deg | rad | e5 (1e-5 deg)
   std::string sigma_unit = "m";            ///< of the columns of positions' sigmas
-  std::vector<double> sigma_m;             ///< north, east, down, for files without sigma columns
+  std::vector<double> sigma_m;             ///< north, east, down, where the file has none
   bool velocity = true;                    ///< read the velocity columns
-  std::vector<double> velocity_sigma_m_s;  ///< north, east, down, without a sigma column
+  std::vector<double> velocity_sigma_m_s;  ///< north, east, down, where the file has none
   std::string quality = "unknown";         ///< of all fixes, without a quality column
   std::map<std::string, std::string> quality_table;  ///< value -> fixed_rtk ... unknown, or none
 
