@@ -15,6 +15,7 @@
 #include "nmea_accuracy.h"
 #include "position_columns.h"
 #include "table_units.h"
+#include "time_column.h"
 #include "unit_search.h"
 
 namespace foucault::rawlog {
@@ -38,7 +39,7 @@ const Roles kPosition{"latitude",
                       "up"};
 
 Roles joined(std::initializer_list<Roles> parts) {
-  Roles all{"time", "date", "week"};
+  Roles all = time_roles();
   for (const Roles& part : parts) all.insert(all.end(), part.begin(), part.end());
   return all;
 }
@@ -60,7 +61,30 @@ void check_lines(const std::map<std::string, std::string>& texts, const std::str
 void check_lines(const TableMapping& mapping, const std::string& section) {
   check_lines(mapping.columns, section + ".columns");
   check_line(mapping.time.date, section + ".time.date");
+  check_line(mapping.time.date_format, section + ".time.date_format");
+  check_line(mapping.rows.column, section + ".rows.column");
+  check_line(mapping.rows.value, section + ".rows.value");
   check_line(mapping.file, section + ".file");
+}
+
+using Notices = std::vector<std::string>;
+
+/// What was assumed of a table.
+Notices joined(Notices notices, const Columns& columns, const TextTable& table) {
+  const Notices of_table = table.notices();
+  notices.insert(notices.end(), columns.notices().begin(), columns.notices().end());
+  notices.insert(notices.end(), of_table.begin(), of_table.end());
+  return notices;
+}
+
+/// Turns seconds of a day that are hhmmss into those.
+Notices find_clock(TableMapping& mapping, const std::string& path, const std::string& section) {
+  if (!has_hhmmss(mapping, path, section)) return {};
+  mapping.time.unit = "hhmmss";
+  return {
+      fmt::format("{}: its times jump at the end of each minute and are read as hhmmss; give "
+                  "{}.time.unit: hhmmss",
+                  path, section)};
 }
 
 // IMU -------------------------------------------------------------------------------------------
@@ -68,7 +92,7 @@ void check_lines(const TableMapping& mapping, const std::string& section) {
 class ImuReader : public RecordReader {
  public:
   /// The mapping's units are no longer `auto`.
-  ImuReader(const ImuMapping& mapping, const std::string& path, std::vector<std::string> notices)
+  ImuReader(const ImuMapping& mapping, const std::string& path, Notices notices)
       : notices_(std::move(notices)),
         table_(open_mapped_table(path)),
         columns_(mapping, table_, "imu",
@@ -85,7 +109,7 @@ class ImuReader : public RecordReader {
 
   const TextTable& table() const override { return table_; }
   int64_t without_fix() const override { return blank_; }
-  std::vector<std::string> notices() const override { return notices_; }
+  Notices notices() const override { return joined(notices_, columns_, table_); }
 
   std::optional<Record> next() override {
     while (ready_.empty()) {
@@ -168,7 +192,7 @@ class ImuReader : public RecordReader {
     ready_.push_back(std::move(record));
   }
 
-  std::vector<std::string> notices_;
+  Notices notices_;
   TextTable table_;
   Columns columns_;
   TimeColumn time_;
@@ -218,17 +242,18 @@ FirstForces first_forces(ImuMapping mapping, const std::string& path) {
 
 struct FoundUnits {
   ImuMapping mapping;
-  std::vector<std::string> notices;
+  Notices notices;
 };
 
 /// With the units that are left to the data.
 FoundUnits with_units(const ImuMapping& mapping, const std::string& path) {
   FoundUnits out{mapping, {}};
+  out.notices = find_clock(out.mapping, path, "imu");
   std::string& accel = out.mapping.accel_unit;
   std::string& gyro = out.mapping.gyro_unit;
   const bool found = accel == "auto";
   if (found) {
-    const FirstForces first = first_forces(mapping, path);
+    const FirstForces first = first_forces(out.mapping, path);
     accel = unit_by_gravity(first.lengths, first.step).value_or("m_s2");
     if (accel != "m_s2") {
       out.notices.push_back(
@@ -388,8 +413,9 @@ class GnssVelocity {
 
 class GnssReader : public RecordReader {
  public:
-  GnssReader(const GnssMapping& mapping, const std::string& path)
-      : table_(open_mapped_table(path)),
+  GnssReader(const GnssMapping& mapping, const std::string& path, Notices notices)
+      : notices_(std::move(notices)),
+        table_(open_mapped_table(path)),
         columns_(mapping, table_, "gnss",
                  joined({kPosition,
                          velocity_roles(),
@@ -406,6 +432,7 @@ class GnssReader : public RecordReader {
 
   const TextTable& table() const override { return table_; }
   int64_t without_fix() const override { return without_fix_; }
+  Notices notices() const override { return joined(notices_, columns_, table_); }
 
   std::optional<Record> next() override {
     while (const Row* row = table_.next()) {
@@ -446,6 +473,7 @@ class GnssReader : public RecordReader {
     return details;
   }
 
+  Notices notices_;
   TextTable table_;
   Columns columns_;
   TimeColumn time_;
@@ -462,8 +490,9 @@ class GnssReader : public RecordReader {
 
 class ReferenceReader : public RecordReader {
  public:
-  ReferenceReader(const ReferenceMapping& mapping, const std::string& path)
-      : table_(open_mapped_table(path)),
+  ReferenceReader(const ReferenceMapping& mapping, const std::string& path, Notices notices)
+      : notices_(std::move(notices)),
+        table_(open_mapped_table(path)),
         columns_(mapping, table_, "reference",
                  joined({kPosition, velocity_roles(), {"roll", "pitch", "heading"}})),
         time_(mapping.time, columns_),
@@ -476,6 +505,7 @@ class ReferenceReader : public RecordReader {
 
   const TextTable& table() const override { return table_; }
   int64_t without_fix() const override { return blank_; }
+  Notices notices() const override { return joined(notices_, columns_, table_); }
 
   std::optional<Record> next() override {
     while (const Row* row = table_.next()) {
@@ -500,6 +530,7 @@ class ReferenceReader : public RecordReader {
     return pose;
   }
 
+  Notices notices_;
   TextTable table_;
   Columns columns_;
   TimeColumn time_;
@@ -564,12 +595,16 @@ std::unique_ptr<RecordReader> make_imu_reader(const ImuMapping& mapping, const s
 
 std::unique_ptr<RecordReader> make_gnss_reader(const GnssMapping& mapping,
                                                const std::string& path) {
-  return std::make_unique<GnssReader>(mapping, path);
+  GnssMapping found = mapping;
+  const Notices notices = find_clock(found, path, "gnss");
+  return std::make_unique<GnssReader>(found, path, notices);
 }
 
 std::unique_ptr<RecordReader> make_reference_reader(const ReferenceMapping& mapping,
                                                     const std::string& path) {
-  return std::make_unique<ReferenceReader>(mapping, path);
+  ReferenceMapping found = mapping;
+  const Notices notices = find_clock(found, path, "reference");
+  return std::make_unique<ReferenceReader>(found, path, notices);
 }
 
 double height_offset(const std::string& height, const std::optional<double>& separation,

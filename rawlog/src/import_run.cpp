@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <ctime>
@@ -161,19 +162,64 @@ void check_not_empty(const ImportStream& stream, const char* what) {
       stream.first_skipped.empty() ? "; check the file" : "; the first: ", stream.first_skipped));
 }
 
+/// Clocks that differ in a known way, and what to do about it.
+struct ClockGap {
+  double seconds;
+  const char* cause;
+};
+
+/// What makes the second stream overlap with the first, for the most part, when added to it.
+std::string likely_gap(const ImportStream& imu, const ImportStream& other) {
+  constexpr double kDay = kSecondsPerDay;
+  constexpr double kWeek = 7 * kDay;
+  constexpr double kGpsEpoch = 315'964'800;
+  std::vector<ClockGap> gaps{{1024 * kWeek, "1024 weeks, as of a GPS week modulo 1024"},
+                             {2048 * kWeek, "2048 weeks, as of a GPS week modulo 1024"},
+                             {kGpsEpoch, "315964800 s, as between the systems unix and gps"},
+                             {kDay, "a day; check the date of both"},
+                             {kWeek, "a week; check the GPS week of both"}};
+  for (int hours = 1; hours <= 14; ++hours)
+    gaps.push_back({3600.0 * hours, "whole hours, as of a time zone"});
+  const int64_t shorter = std::min(imu.last_ns - imu.first_ns, other.last_ns - other.first_ns);
+  for (const ClockGap& gap : gaps) {
+    for (const double seconds : {gap.seconds, -gap.seconds}) {
+      const int64_t shift = nanoseconds(seconds);
+      const int64_t common = std::min(imu.last_ns, other.last_ns + shift) -
+                             std::max(imu.first_ns, other.first_ns + shift);
+      if (common <= 0 || common < shorter - shorter / 4) continue;
+      return fmt::format("; they would with {}: {:.0f} s more in the time.offset_s of '{}'",
+                         gap.cause, seconds, other.file);
+    }
+  }
+  return "";
+}
+
 void check_overlap(const ImportStream& imu, const ImportStream& other, const char* what) {
   if (other.first_ns <= imu.last_ns && imu.first_ns <= other.last_ns) return;
   throw DataError(fmt::format(
       "IMU ({} to {}) and {} ({} to {}) do not overlap; check week, time system and offsets of "
-      "'{}' and '{}'",
+      "'{}' and '{}'{}",
       utc_text(imu.first_ns), utc_text(imu.last_ns), what, utc_text(other.first_ns),
-      utc_text(other.last_ns), imu.file, other.file));
+      utc_text(other.last_ns), imu.file, other.file, likely_gap(imu, other)));
+}
+
+/// Many rows in no time are of a clock in another unit.
+void check_rate(const ImportStream& stream) {
+  constexpr int64_t kFew = 100;
+  constexpr int64_t kShortestStepNs = 1000;
+  const int64_t length_ns = stream.last_ns - stream.first_ns;
+  if (stream.written < kFew || length_ns >= kShortestStepNs * stream.written) return;
+  throw DataError(
+      fmt::format("{} rows of '{}' lie within {:.3g} s; check unit and system of its time",
+                  stream.written, stream.file, seconds_between(stream.first_ns, stream.last_ns)));
 }
 
 void check(const ImportSummary& summary) {
   const bool has_imu = !summary.imu.file.empty();
   if (has_imu) check_not_empty(summary.imu, "IMU");
   check_not_empty(summary.gnss, "GNSS");
+  if (has_imu) check_rate(summary.imu);
+  check_rate(summary.gnss);
   if (has_imu) check_overlap(summary.imu, summary.gnss, "GNSS");
   if (!summary.reference) return;
   check_not_empty(*summary.reference, "reference");
