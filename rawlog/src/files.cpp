@@ -76,6 +76,19 @@ bool is_same_file(int file, const std::string& path) {
 
 }  // namespace
 
+TemporaryFile::TemporaryFile() {
+  const fs::path folder = fs::temp_directory_path();
+  path_ = (folder / "foucault-XXXXXX").string();
+  const int descriptor = mkstemp(path_.data());
+  if (descriptor < 0) {
+    throw DataError(fmt::format("'{}' cannot be written to: {}; set TMPDIR to another folder",
+                                folder.string(), std::strerror(errno)));
+  }
+  close(descriptor);
+}
+
+TemporaryFile::~TemporaryFile() { unlink(path_.c_str()); }
+
 PendingFile::PendingFile(std::string path) : path_(std::move(path)) {
   if (path_.empty()) throw DataError("the output file has no name; give one");
   check_writable(path_);

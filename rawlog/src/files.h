@@ -23,6 +23,21 @@ void check_readable(const std::string& path);
 /// Throws DataError as check_readable, or if it cannot be opened.
 GzHandle open_for_reading(const std::string& path);
 
+/// An empty file without a name of its own, among those that are temporary; removed at the end.
+class TemporaryFile {
+ public:
+  /// Throws DataError.
+  TemporaryFile();
+  ~TemporaryFile();
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
+
+  const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+};
+
 /// A file that appears under its name whole or not at all: written into a hidden one beside,
 /// renamed by commit(), removed by the destructor otherwise. What a process that was killed left
 /// behind is written over by the next one with the same name. Throws DataError, also if another

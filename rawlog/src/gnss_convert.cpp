@@ -24,7 +24,6 @@ namespace position_type = mrpt::obs::gnss::nv_oem6_position_type;
 namespace solution_status = mrpt::obs::gnss::nv_oem6_solution_status;
 namespace ins_status = mrpt::obs::gnss::nv_oem6_ins_status_type;
 
-constexpr double kKnot = 1852.0 / kSecondsPerHour;
 constexpr double kVelocitySigma = 0.1;  ///< of a velocity vector that comes without one [m/s]
 /// Spherical error probable of an isotropic error of sigma 1.
 constexpr double kSepPerSigma = 1.5382;

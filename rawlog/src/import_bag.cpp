@@ -3,10 +3,13 @@
 #include <fmt/format.h>
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <fstream>
 #include <map>
 #include <set>
+#include <string_view>
 #include <utility>
 
 #include "csv_readers.h"
@@ -16,6 +19,7 @@
 #include "foucault/rawlog/import_mapping.h"
 #include "import_run.h"
 #include "inflate_block.h"
+#include "nmea_reader.h"
 #include "ros_layout.h"
 #include "ros_recording.h"
 
@@ -131,6 +135,15 @@ struct RosVelocity : Fields {
   Slot covariance;
 };
 
+/// nmea_msgs/Sentence.
+struct RosSentence : Fields {
+  explicit RosSentence(const RosType& type)
+      : Fields(type), sentence(layout.want_text("sentence")) {}
+  bool complete() const { return sentence.has_value(); }
+
+  Slot sentence;
+};
+
 // Topics ----------------------------------------------------------------------------------------
 
 template <class Kind>
@@ -150,10 +163,7 @@ std::string listed(const RosTopics& topics) {
   }
   std::string list = found.empty() ? "none" : "";
   for (const std::string& topic : found) list += (list.empty() ? "" : ", ") + topic;
-  for (char& c : list) {
-    if (static_cast<unsigned char>(c) < ' ') c = '?';  // an error is one line
-  }
-  return list;
+  return one_line(list);
 }
 
 /// The topic that is to be taken: the given one, or the only one with what a `Kind` needs.
@@ -233,23 +243,11 @@ class BagReader : public RecordReader {
   /// Of the header; of the recording where there is none.
   int64_t stamp_of(const Fields& fields, const Values& values, const RosMessage& message) {
     const std::optional<int64_t> stamp = fields.stamp(values);
-    if (!stamp) ++without_stamp_[topic_of(message).name];
+    if (!stamp) ++without_stamp_[one_line(topic_of(message).name)];
     return stamp.value_or(message.recorded_ns);
   }
 
   StampOrder order_;
-
- private:
-  template <class Action>
-  auto contained(Action action) const -> decltype(action()) {
-    try {
-      return action();
-    } catch (const RecordTooShort&) {
-      place().fail("a message that is shorter than its definition; the recording is damaged here");
-    } catch (const BadRecord& error) {
-      place().fail(fmt::format("{}; the recording is damaged here", error.what()));
-    }
-  }
 
   /// rosbag 2 may compress each message, which then cannot begin as one of CDR does.
   Bytes plain(const RosMessage& message) {
@@ -261,6 +259,18 @@ class BagReader : public RecordReader {
       place().fail("a message that cannot be inflated by zstd; the recording is damaged here");
     }
     return bytes_of(inflated_);
+  }
+
+ private:
+  template <class Action>
+  auto contained(Action action) const -> decltype(action()) {
+    try {
+      return action();
+    } catch (const RecordTooShort&) {
+      place().fail("a message that is shorter than its definition; the recording is damaged here");
+    } catch (const BadRecord& error) {
+      place().fail(fmt::format("{}; the recording is damaged here", error.what()));
+    }
   }
 
   std::unique_ptr<RosRecording> recording_;
@@ -430,9 +440,118 @@ class BagGnss : public BagReader {
   int64_t without_fix_ = 0;
 };
 
+/// The sentences of a topic.
+class BagSentences : public BagReader {
+ public:
+  BagSentences(RosLog& log, const std::string& topic) : BagReader(log, {topic}) {}
+
+  std::optional<Record> next() override { return std::nullopt; }
+
+  /// Throws RowError and goes on behind it; none at the end.
+  std::optional<std::string> sentence() {
+    const std::optional<RosMessage> message = next_message();
+    if (!message) return std::nullopt;
+    if (!begins_ns_) begins_ns_ = message->recorded_ns;
+    const RosSentence& fields = fields_of(*message, fields_);
+    const Values values = values_of(fields, *message);
+    const auto* const begin = plain(*message).begin + static_cast<size_t>(values[*fields.sentence]);
+    std::string text(begin, begin + static_cast<size_t>(values[*fields.sentence + 1]));
+    text.resize(std::min(text.find_first_of(std::string_view("\r\n\0", 3)), text.size()));
+    return text;
+  }
+  /// Of the first message.
+  std::optional<int64_t> begins_ns() const { return begins_ns_; }
+
+ private:
+  std::map<uint32_t, RosSentence> fields_;
+  std::optional<int64_t> begins_ns_;
+};
+
+/// Fixes of a topic of sentences, by their own clock.
+class BagNmea : public RecordReader {
+ public:
+  BagNmea(RosLog& log, const BagImport& options, const std::string& topic) : topic_(topic) {
+    const std::optional<int64_t> begins_ns = write_sentences(log, options);
+    GnssMapping mapping;
+    if (options.gnss_sigma) {
+      mapping.sigma_m.assign(options.gnss_sigma->data(), options.gnss_sigma->data() + 3);
+    }
+    if (options.velocity_sigma) {
+      mapping.velocity_sigma_m_s.assign(options.velocity_sigma->data(),
+                                        options.velocity_sigma->data() + 3);
+    }
+    reader_ = make_nmea_reader(
+        mapping,
+        {sentences_.path(), fmt::format("{} ({})", options.bag, one_line(topic)), begins_ns});
+  }
+
+  std::optional<Record> next() override { return reader_->next(); }
+  const InputFile& table() const override { return reader_->table(); }
+  int64_t without_fix() const override { return reader_->without_fix(); }
+  std::vector<std::string> notices() const override {
+    std::vector<std::string> found = reader_->notices();
+    found.push_back(fmt::format(
+        "{}: stamps are the receiver's, those of the IMU may be of another clock", table().path()));
+    if (left_out_ > 0) {
+      found.push_back(fmt::format("{}: {} damaged messages left out", table().path(), left_out_));
+    }
+    return found;
+  }
+
+ private:
+  /// When they begin.
+  std::optional<int64_t> write_sentences(RosLog& log, const BagImport& options) {
+    std::ofstream file(sentences_.path(), std::ios::binary);
+    BagSentences messages(log, topic_);
+    for (bool over = false; !over;) {
+      try {
+        const std::optional<std::string> sentence = messages.sentence();
+        over = !sentence;
+        file << sentence.value_or("") << '\n';
+      } catch (const RowError& error) {
+        if (!options.skip_bad_rows) {
+          throw DataError(fmt::format("{}, or skip bad rows (--skip-bad-rows)", error.what()));
+        }
+        ++left_out_;
+      }
+    }
+    if (!file.flush()) {
+      throw DataError(
+          fmt::format("'{}' cannot be written to, the disk may be full", sentences_.path()));
+    }
+    return messages.begins_ns();
+  }
+
+  std::string topic_;
+  TemporaryFile sentences_;
+  std::unique_ptr<RecordReader> reader_;
+  int64_t left_out_ = 0;
+};
+
 void check_sigma(const std::optional<Eigen::Vector3d>& sigma, const char* option) {
   if (!sigma || sigma->minCoeff() > 0) return;
   throw UsageError(fmt::format("--{}-sigma: three numbers greater than zero are needed", option));
+}
+
+template <class Kind>
+bool has_topic(const RosTopics& topics, const std::optional<std::string>& given) {
+  return std::any_of(topics.begin(), topics.end(), [&](const auto& numbered) {
+    const RosTopic& topic = numbered.second;
+    return (given ? topic.name == *given : topic.messages != 0) && can_be<Kind>(topic.type);
+  });
+}
+
+/// Of sentences only where there are no fixes, or if that is the topic given.
+std::unique_ptr<RecordReader> make_gnss(RosLog& log, const RosTopics& topics,
+                                        const BagImport& options) {
+  const auto& given = options.gnss_topic;
+  if (!has_topic<RosFix>(topics, given) && has_topic<RosSentence>(topics, given)) {
+    return std::make_unique<BagNmea>(
+        log, options, topic_of<RosSentence>(options, topics, given, "gnss", "sentences of NMEA"));
+  }
+  return std::make_unique<BagGnss>(
+      log, options,
+      topic_of<RosFix>(options, topics, given, "gnss", "latitude, longitude and altitude"));
 }
 
 }  // namespace
@@ -449,10 +568,7 @@ ImportSummary import_bag(const BagImport& options) {
   inputs.imu =
       std::make_unique<BagImu>(log, topic_of<RosImu>(options, topics, options.imu_topic, "imu",
                                                      "angular_velocity and linear_acceleration"));
-  inputs.gnss =
-      std::make_unique<BagGnss>(log, options,
-                                topic_of<RosFix>(options, topics, options.gnss_topic, "gnss",
-                                                 "latitude, longitude and altitude"));
+  inputs.gnss = make_gnss(log, topics, options);
   if (options.velocity_topic) {
     topic_of<RosVelocity>(options, topics, options.velocity_topic, "velocity",
                           "a twist east, north, up");

@@ -11,6 +11,7 @@
 #include "foucault/core/fix_quality.h"
 #include "foucault/core/time.h"
 #include "nmea_accuracy.h"
+#include "nmea_reader.h"
 #include "nmea_sentences.h"
 
 namespace foucault::rawlog {
@@ -23,11 +24,11 @@ constexpr double kLargestHeight = 1e8;   ///< [m]
 
 class NmeaReader : public RecordReader {
  public:
-  NmeaReader(const GnssMapping& mapping, const std::string& path)
-      : epochs_(path),
+  NmeaReader(const GnssMapping& mapping, const NmeaFile& file)
+      : epochs_(file.path, file.named),
         mapping_(mapping),
         offset_ns_(nanoseconds(mapping.time.offset_s)),
-        near_ns_(first_stamp(mapping, path)) {}
+        near_ns_(first_stamp(mapping, file)) {}
 
   const TextTable& table() const override { return epochs_.sentences().table(); }
   int64_t without_fix() const override { return epochs_.without_fix(); }
@@ -76,7 +77,7 @@ class NmeaReader : public RecordReader {
   }
 
  private:
-  static int64_t first_stamp(const GnssMapping& mapping, const std::string& path);
+  static int64_t first_stamp(const GnssMapping& mapping, const NmeaFile& file);
 
   GnssFix fix_of(const NmeaEpoch& epoch) {
     const NmeaPosition& position = *epoch.position;
@@ -147,8 +148,8 @@ class NmeaReader : public RecordReader {
 };
 
 /// The first epoch of the file, dated by the first RMC or ZDA beside a position.
-int64_t NmeaReader::first_stamp(const GnssMapping& mapping, const std::string& path) {
-  NmeaEpochs epochs(path);
+int64_t NmeaReader::first_stamp(const GnssMapping& mapping, const NmeaFile& file) {
+  NmeaEpochs epochs(file.path, file.named);
   std::optional<int64_t> first_time_ns;
   for (bool over = false; !over;) {
     try {
@@ -165,17 +166,23 @@ int64_t NmeaReader::first_stamp(const GnssMapping& mapping, const std::string& p
     throw DataError(fmt::format(
         "'{}' has no position in NMEA: of {} sentences {} have a wrong checksum or none, {} GGA "
         "are without a fix; give a file with GGA sentences",
-        path, epochs.sentences().sentences(), epochs.sentences().damaged(), epochs.without_fix()));
+        file.named, epochs.sentences().sentences(), epochs.sentences().damaged(),
+        epochs.without_fix()));
   }
   const std::optional<int64_t> midnight = midnight_ns(mapping.time.date, "%Y-%m-%d");
   if (midnight) return *midnight + *first_time_ns;
+  if (file.begins_ns) return stamp_near(*first_time_ns, *file.begins_ns);
   throw UsageError(
       fmt::format("'{}' has no date (RMC or ZDA); give gnss.time.date: YYYY-MM-DD, of its first "
                   "position, UTC",
-                  path));
+                  file.named));
 }
 
 }  // namespace
+
+std::unique_ptr<RecordReader> make_nmea_reader(const GnssMapping& mapping, const NmeaFile& file) {
+  return std::make_unique<NmeaReader>(mapping, file);
+}
 
 ImportSummary import_nmea(const NmeaImport& options) {
   const MappingSource source{options.mapping, options.data_dir};
@@ -183,7 +190,7 @@ ImportSummary import_nmea(const NmeaImport& options) {
   const ImportMapping mapping = add_tables(source, options.imu, options.reference, inputs);
   const auto gnss = input_path(source, options.gnss, mapping.gnss.file);
   if (!gnss) throw UsageError("no NMEA file: give --gnss, or gnss.file in the mapping");
-  inputs.gnss = std::make_unique<NmeaReader>(mapping.gnss, *gnss);
+  inputs.gnss = make_nmea_reader(mapping.gnss, {*gnss, *gnss, {}});
   if (options.lever_arm) inputs.lever_arm_v = options.lever_arm;
   return run_import(options, std::move(inputs));
 }

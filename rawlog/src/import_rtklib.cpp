@@ -360,11 +360,13 @@ class PosReader : public rawlog::RecordReader {
     row.fail("the covariance is not positive; correct or remove the row");
   }
 
-  /// One or two may be zero beside what they have in common.
+  /// One or two may be zero beside what they have in common with others.
   Eigen::Vector3d sigmas(const Row& row, const std::string& prefix, bool full) const {
     Eigen::Vector3d sigma = along_axes(row, prefix);
+    const auto common = [&](int i) { return row.number(*common_column(prefix, i, (i + 1) % 3)); };
     for (int i = 0; i < 3; ++i) {
-      const bool may_be_zero = full && sigma.maxCoeff() > 0 && sigma[i] == 0;
+      const bool may_be_zero = full && sigma.maxCoeff() > 0 && sigma[i] == 0 &&
+                               (common(i) != 0 || common((i + 2) % 3) != 0);
       if (!may_be_zero) sigma[i] = row.sigma(column(prefix + header_.layout->axes[i]));
     }
     return sigma;

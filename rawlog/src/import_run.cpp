@@ -14,6 +14,7 @@
 #include "foucault/core/error.h"
 #include "foucault/core/hole.h"
 #include "foucault/core/time.h"
+#include "foucault/core/time_mismatch.h"
 #include "foucault/rawlog/mrpt_convert.h"
 
 namespace foucault::rawlog {
@@ -162,45 +163,13 @@ void check_not_empty(const ImportStream& stream, const char* what) {
       stream.first_skipped.empty() ? "; check the file" : "; the first: ", stream.first_skipped));
 }
 
-/// Clocks that differ in a known way, and what to do about it.
-struct ClockGap {
-  double seconds;
-  const char* cause;
-};
-
-/// What makes the second stream overlap with the first, for the most part, when added to it.
-std::string likely_gap(const ImportStream& imu, const ImportStream& other) {
-  constexpr double kDay = kSecondsPerDay;
-  constexpr double kWeek = 7 * kDay;
-  constexpr double kGpsEpoch = 315'964'800;
-  std::vector<ClockGap> gaps{{1024 * kWeek, "1024 weeks, as of a GPS week modulo 1024"},
-                             {2048 * kWeek, "2048 weeks, as of a GPS week modulo 1024"},
-                             {kGpsEpoch, "315964800 s, as between the systems unix and gps"},
-                             {kDay, "a day; check the date of both"},
-                             {kWeek, "a week; check the GPS week of both"}};
-  for (int hours = 1; hours <= 14; ++hours)
-    gaps.push_back({3600.0 * hours, "whole hours, as of a time zone"});
-  const int64_t shorter = std::min(imu.last_ns - imu.first_ns, other.last_ns - other.first_ns);
-  for (const ClockGap& gap : gaps) {
-    for (const double seconds : {gap.seconds, -gap.seconds}) {
-      const int64_t shift = nanoseconds(seconds);
-      const int64_t common = std::min(imu.last_ns, other.last_ns + shift) -
-                             std::max(imu.first_ns, other.first_ns + shift);
-      if (common <= 0 || common < shorter - shorter / 4) continue;
-      return fmt::format("; they would with {}: {:.0f} s more in the time.offset_s of '{}'",
-                         gap.cause, seconds, other.file);
-    }
-  }
-  return "";
-}
-
 void check_overlap(const ImportStream& imu, const ImportStream& other, const char* what) {
   if (other.first_ns <= imu.last_ns && imu.first_ns <= other.last_ns) return;
-  throw DataError(fmt::format(
-      "IMU ({} to {}) and {} ({} to {}) do not overlap; check week, time system and offsets of "
-      "'{}' and '{}'{}",
-      utc_text(imu.first_ns), utc_text(imu.last_ns), what, utc_text(other.first_ns),
-      utc_text(other.last_ns), imu.file, other.file, likely_gap(imu, other)));
+  throw DataError(
+      fmt::format("IMU ({} to {}) and {} ({} to {}) do not overlap: '{}' begins {} ('{}')",
+                  utc_text(imu.first_ns), utc_text(imu.last_ns), what, utc_text(other.first_ns),
+                  utc_text(other.last_ns), other.file,
+                  describe_mismatch(seconds_between(imu.first_ns, other.first_ns)), imu.file));
 }
 
 /// Many rows in no time are of a clock in another unit.

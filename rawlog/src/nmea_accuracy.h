@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "foucault/core/constants.h"
 #include "foucault/core/fix_quality.h"
 
 /// How accurate fixes of NMEA are taken to be, which says it in GST only.
@@ -17,6 +18,8 @@ struct NmeaSigma {
 /// 0.7, single and unknown 1.7), times HDOP (at least 0.5; 1 where the receiver gives none);
 /// vertical is twice the horizontal.
 NmeaSigma nmea_sigma(FixQuality quality, std::optional<double> hdop);
+
+inline constexpr double kKnot = 1852.0 / kSecondsPerHour;  ///< [m/s]
 
 /// Of a speed and a course along the ground, which leave the vertical open [m/s].
 inline constexpr double kGroundSpeedSigma = 0.2;

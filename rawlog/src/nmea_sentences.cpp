@@ -9,12 +9,11 @@
 #include "foucault/core/constants.h"
 #include "foucault/core/time.h"
 #include "import_run.h"
+#include "nmea_accuracy.h"
 
 namespace foucault::rawlog {
 
 namespace {
-
-constexpr double kKnot = 1852.0 / kSecondsPerHour;  ///< [m/s]
 
 constexpr size_t kAddress = 5;  ///< two letters of the talker (GP, GN, GL ...), three of the type
 
@@ -122,8 +121,8 @@ bool is_valid(const Row& row, size_t mode) { return is_blank(row, mode) || row.t
 
 }  // namespace
 
-NmeaSentences::NmeaSentences(const std::string& path)
-    : table_(path, TextTable::Separator::comma, "") {}
+NmeaSentences::NmeaSentences(const std::string& path, const std::string& named)
+    : table_(path, TextTable::Separator::comma, "", named) {}
 
 const Row* NmeaSentences::next() {
   while (const std::optional<std::string_view> sentence = next_sentence()) {

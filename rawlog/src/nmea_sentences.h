@@ -35,7 +35,7 @@ struct NmeaEpoch {
 /// of a logger, binary messages of the receiver.
 class NmeaSentences {
  public:
-  explicit NmeaSentences(const std::string& path);
+  NmeaSentences(const std::string& path, const std::string& named);
 
   /// The first field is the address, e.g. GPGGA. None at the end.
   const Row* next();
@@ -58,7 +58,8 @@ class NmeaSentences {
 /// Sentences of a time of day, joined.
 class NmeaEpochs {
  public:
-  explicit NmeaEpochs(const std::string& path) : sentences_(path) {}
+  /// Messages name the file `named`.
+  NmeaEpochs(const std::string& path, const std::string& named) : sentences_(path, named) {}
 
   /// None at the end. Throws RowError for a sentence that is wrong, and goes on behind it.
   std::optional<NmeaEpoch> next();

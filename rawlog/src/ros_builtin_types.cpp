@@ -64,6 +64,9 @@ float64 longitude
 float64 altitude
 float64[9] position_covariance
 uint8 position_covariance_type
+MSG: nmea_msgs/Sentence
+std_msgs/Header header
+string sentence
 )";
 
 }  // namespace foucault::rawlog

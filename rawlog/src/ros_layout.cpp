@@ -38,6 +38,8 @@ class RosCursor {
   }
 
   void skip(size_t count) { cursor_.skip(count); }
+  /// In the message.
+  size_t position() const { return cursor_.position() + (cdr_ ? kCdrHeader : 0); }
 
  private:
   static constexpr ptrdiff_t kCdrHeader = 4;
@@ -109,13 +111,21 @@ class RosFieldReader {
       if (decode == nullptr) {
         for (const RosLayout::Field& member : field.members) read(member);
       } else {
-        const double value = decode(cursor_);
-        if (field.slot) values_[*field.slot + i] = value;
+        take(field, i, decode(cursor_));
       }
     }
   }
 
  private:
+  void take(const RosLayout::Field& field, size_t i, double value) {
+    if (!field.slot) return;
+    if (field.type == kText) {
+      values_[*field.slot] = static_cast<double>(cursor_.position()) - value;
+      i = 1;
+    }
+    values_[*field.slot + i] = value;
+  }
+
   size_t counted(size_t most) {
     const auto count = cursor_.get<uint32_t>();
     if (count > most) throw BadRecord("a length of " + std::to_string(count));
@@ -263,6 +273,16 @@ std::optional<size_t> RosLayout::want_exactly(const std::string& path, size_t co
       field.slot = wanted_;
       wanted_ += count;
     }
+    return field.slot;
+  }
+  return std::nullopt;
+}
+
+std::optional<size_t> RosLayout::want_text(const std::string& path) {
+  for (Field& field : fields_) {
+    if (field.path != path || field.type != kText || field.counted || field.count != 1) continue;
+    field.slot = wanted_;
+    wanted_ += 2;
     return field.slot;
   }
   return std::nullopt;

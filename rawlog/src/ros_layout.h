@@ -37,6 +37,8 @@ class RosLayout {
   /// (`path.data`); none if there is no such field.
   std::optional<size_t> want(const std::string& path, size_t count = 1);
   bool has(const std::string& path) const;
+  /// Of a text read() gives two numbers: where it begins in the message, and its length.
+  std::optional<size_t> want_text(const std::string& path);
 
   /// What was wanted. Throws RecordTooShort or BadRecord.
   std::vector<double> read(Bytes message) const;

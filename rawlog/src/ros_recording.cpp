@@ -1,9 +1,7 @@
 #include "ros_recording.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <string_view>
@@ -35,6 +33,13 @@ bool begins_with(const std::vector<unsigned char>& bytes, std::string_view begin
 
 }  // namespace
 
+std::string one_line(std::string text) {
+  for (char& c : text) {
+    if (static_cast<unsigned char>(c) < ' ') c = '?';
+  }
+  return text;
+}
+
 bool RosRecording::is_selected(uint32_t topic) const {
   if (!selected_) return true;
   const auto found = topics_.find(topic);
@@ -56,11 +61,6 @@ RosTopics topics_of(const std::function<std::unique_ptr<RosRecording>()>& open) 
 }
 
 RosLog::RosLog(std::string path) : path_(std::move(path)), folder_(fs::is_directory(path_)) {}
-
-RosLog::~RosLog() {
-  std::error_code ignored;
-  for (const auto& [from, to] : inflated_) fs::remove(to, ignored);
-}
 
 std::unique_ptr<RosRecording> RosLog::open() {
   if (folder_) return std::make_unique<RosbagFolder>(path_, *this);
@@ -89,21 +89,14 @@ std::unique_ptr<RosRecording> RosLog::open_file(const std::string& path) {
 }
 
 /// Where it lies without zstd.
-std::string RosLog::inflated(const std::string& path) {
-  const auto known = inflated_.find(path);
-  if (known != inflated_.end()) return known->second;
-  std::string file = (fs::temp_directory_path() / "foucault-XXXXXX").string();
-  const int descriptor = mkstemp(file.data());
-  if (descriptor < 0) {
-    throw DataError(
-        fmt::format("'{}' cannot be inflated, there is no writing in '{}'; inflate it by "
-                    "zstd -d",
-                    path, fs::temp_directory_path().string()));
+const std::string& RosLog::inflated(const std::string& path) {
+  std::unique_ptr<TemporaryFile>& known = inflated_[path];
+  if (!known) {
+    auto file = std::make_unique<TemporaryFile>();
+    inflate_zstd_file(path, file->path());
+    known = std::move(file);
   }
-  close(descriptor);
-  inflated_[path] = file;
-  inflate_zstd_file(path, file);
-  return file;
+  return known->path();
 }
 
 }  // namespace foucault::rawlog

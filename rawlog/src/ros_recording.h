@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "binary_file.h"
+#include "files.h"
 #include "ros_layout.h"
 
 namespace foucault::rawlog {
@@ -29,6 +30,9 @@ struct RosMessage {
   int64_t recorded_ns = 0;
   Bytes bytes;
 };
+
+/// What a recording says, in a message, which is one line.
+std::string one_line(std::string text);
 
 /// Messages of ROS in the order in which they were recorded, whatever the format.
 class RosRecording {
@@ -66,9 +70,6 @@ class RosLog {
  public:
   /// Throws DataError.
   explicit RosLog(std::string path);
-  ~RosLog();
-  RosLog(const RosLog&) = delete;
-  RosLog& operator=(const RosLog&) = delete;
 
   /// To be read from the beginning; not longer than this lives. Throws DataError.
   std::unique_ptr<RosRecording> open();
@@ -77,11 +78,11 @@ class RosLog {
   RosTopics topics();
 
  private:
-  std::string inflated(const std::string& path);
+  const std::string& inflated(const std::string& path);
 
   std::string path_;
   bool folder_ = false;
-  std::map<std::string, std::string> inflated_;  ///< by the file of zstd
+  std::map<std::string, std::unique_ptr<TemporaryFile>> inflated_;  ///< by the file of zstd
 };
 
 }  // namespace foucault::rawlog

@@ -82,7 +82,7 @@ void Rosbag2Database::open(const std::string& path) {
 
 void Rosbag2Database::fail_to_open() const {
   throw DataError(fmt::format("'{}' cannot be read as a recording of rosbag 2: {}; {}", named_,
-                              sqlite3_errmsg(database_.get()), kSqliteRemedy));
+                              one_line(sqlite3_errmsg(database_.get())), kSqliteRemedy));
 }
 
 Rosbag2Database::Statement Rosbag2Database::prepare(const std::string& sql) const {
@@ -97,7 +97,7 @@ bool Rosbag2Database::step(const Statement& statement) const {
   const int result = sqlite3_step(statement.get());
   if (result == SQLITE_ROW) return true;
   if (result == SQLITE_DONE) return false;
-  fail(fmt::format("what follows cannot be read: {}; {}", sqlite3_errmsg(database_.get()),
+  fail(fmt::format("what follows cannot be read: {}; {}", one_line(sqlite3_errmsg(database_.get())),
                    kSqliteRemedy));
 }
 

@@ -38,7 +38,7 @@ std::vector<std::string> files_of_metadata(const fs::path& folder) {
     }
   } catch (const YAML::Exception& error) {
     throw DataError(fmt::format("'{}' cannot be read: {}; mend or remove it",
-                                (folder / kMetadata).string(), error.what()));
+                                (folder / kMetadata).string(), one_line(error.what())));
   }
   return files;
 }

@@ -47,7 +47,8 @@ bool begins_with(const std::string& text, std::string_view with) {
 
 }  // namespace
 
-TextLines::TextLines(const std::string& path) : path_(path), file_(open_for_reading(path)) {
+TextLines::TextLines(const std::string& path, std::string named)
+    : named_(std::move(named)), file_(open_for_reading(path)) {
   gzbuffer(file_.get(), kGzipBuffer);
   std::error_code error;
   const auto size = std::filesystem::file_size(path, error);
@@ -85,7 +86,7 @@ void TextLines::check_length() {
   }
   if (block_.size() - line_ < kLongestTextLine) return;
   throw DataError(fmt::format("{}:{}: the line is longer than {} characters; is this a text file?",
-                              path_, lines_ + 1, kLongestTextLine - 1));
+                              named_, lines_ + 1, kLongestTextLine - 1));
 }
 
 bool TextLines::refill() {
@@ -108,7 +109,7 @@ std::string TextLines::read() {
   gzerror(file_.get(), &error);
   if (read < 0) {
     throw DataError(
-        fmt::format("'{}' is truncated or damaged after line {}; copy it again", path_, lines_));
+        fmt::format("'{}' is truncated or damaged after line {}; copy it again", named_, lines_));
   }
   is_cut_ = error == Z_BUF_ERROR;
   bytes.resize(before + static_cast<size_t>(read));
@@ -130,7 +131,7 @@ void TextLines::begin(std::string& bytes) {
   constexpr std::string_view kBig = "\xFE\xFF";
   if (begins_with(bytes, kZip)) {
     throw DataError(fmt::format(
-        "'{}' is a zip archive, as .xlsx files are; unpack it, or save the table as CSV", path_));
+        "'{}' is a zip archive, as .xlsx files are; unpack it, or save the table as CSV", named_));
   }
   if (begins_with(bytes, kMark)) bytes.erase(0, kMark.size());
   if (begins_with(bytes, kLittle)) encoding_ = Encoding::utf16_little;

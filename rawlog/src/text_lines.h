@@ -13,8 +13,8 @@ namespace foucault::rawlog {
 /// UTF-8; lines may end with CR alone, if none of the file's beginning ends otherwise.
 class TextLines {
  public:
-  /// Throws DataError if the file cannot be opened.
-  explicit TextLines(const std::string& path);
+  /// Messages name it `named`. Throws DataError if the file cannot be opened.
+  TextLines(const std::string& path, std::string named);
 
   /// The next line without its end, until the next call. A line that a gzip file ends in before its
   /// end is left out. Throws DataError if the file is damaged or a line is no text.
@@ -36,7 +36,7 @@ class TextLines {
   void check_length();
   std::string_view take(size_t end, size_t next);
 
-  std::string path_;
+  std::string named_;
   GzHandle file_;
   double file_size_ = 0;
   Encoding encoding_ = Encoding::bytes;

@@ -206,11 +206,12 @@ double Row::sigma(size_t column, const std::string& constant) const {
 
 std::string Row::where() const { return fmt::format("{}:{}", *path_, line_); }
 
-TextTable::TextTable(std::string path, Separator separator, std::string comment_signs)
-    : path_(std::move(path)),
+TextTable::TextTable(const std::string& path, Separator separator, std::string comment_signs,
+                     std::string named)
+    : path_(std::move(named)),
       separator_(separator),
       comment_signs_(std::move(comment_signs)),
-      lines_(path_) {
+      lines_(path, path_) {
   row_.path_ = &path_;
 }
 

@@ -55,7 +55,11 @@ class TextTable : public InputFile {
   enum class Decimal { automatic, point, comma };
 
   /// Throws DataError if the file cannot be opened.
-  TextTable(std::string path, Separator separator, std::string comment_signs);
+  TextTable(const std::string& path, Separator separator, std::string comment_signs)
+      : TextTable(path, separator, std::move(comment_signs), path) {}
+  /// Messages name it `named`.
+  TextTable(const std::string& path, Separator separator, std::string comment_signs,
+            std::string named);
   /// From the next row on.
   void read_as(Separator separator, Decimal decimal);
   /// Rows that have something else in this column are left out.

@@ -736,7 +736,7 @@ TEST_F(RtklibFormats, RoundedCovariancesAreWidened) {
 TEST_F(RtklibFormats, DigitsThatRtklibLost) {
   const std::string header =
       "%  GPST latitude(deg) longitude(deg) height(m) Q ns sdn(m) sde(m) sdu(m) sdne(m) sdeu(m) "
-      "sdun(m)\n2244 36559.00 48.780243899 9.171507210 320.0005 1 7 ";
+      "sdun(m)\n2244 36001.00 48.780243899 9.171507210 320.0005 1 7 ";
   const GnssFix fix = fix_of(header + "0.0032 0.0000 0.0087 -0.0025 -0.0029 -0.0028\n");
   const Eigen::Vector3d sigma = fix.position_covariance.diagonal().cwiseSqrt();
   EXPECT_LT((sigma - Eigen::Vector3d(4.4e-3, 3e-3, 9.2e-3)).cwiseAbs().maxCoeff(), 1e-4);

@@ -3,6 +3,7 @@
 
 #include "foucault/core/constants.h"
 #include "foucault/core/time.h"
+#include "foucault/rawlog/import_bag.h"
 #include "foucault/rawlog/import_csv.h"
 #include "foucault/rawlog/import_i2nav.h"
 #include "foucault/rawlog/import_rtklib.h"
@@ -189,6 +190,30 @@ TEST_F(Recordings, KittiWithoutOriginSaysWhatToGive) {
   import.mapping = scratch_.text_file("no_origin.yaml", yaml);
   EXPECT_NE(test::error_of<UsageError>([&] { import_csv(import); }).find("gnss.origin"),
             std::string::npos);
+}
+
+/// The same drive as a bag of ROS 1, and as it was converted to MCAP and rosbag 2 by mcap and
+/// rosbags.
+TEST_F(Recordings, RobotOfRos1And2) {
+  const std::string drive = data_dir() + "/raw_fixtures/robot_localization_test1";
+  BagImport import;
+  import.bag = drive + ".bag";
+  if (!std::filesystem::exists(import.bag)) GTEST_SKIP() << "no " << import.bag;
+  import.out = scratch_.path("ros1.rawlog");
+  import.imu_axes = {"x", "z", "-y"};  // on its side
+  const ImportSummary summary = import_bag(import);
+  EXPECT_EQ(summary.imu.written, 11865);
+  EXPECT_EQ(summary.gnss.written, 989);
+  EXPECT_EQ(summary.qualities.at(FixQuality::differential), 989);
+  EXPECT_NEAR(specific_force_v(import.out, 30).z(), -9.8, 0.1);
+  const std::string ros1 = test::contents(import.out);
+  for (const char* ending : {"_ros2.mcap", "_ros2.db3.zstd"}) {
+    import.bag = drive + ending;
+    if (!std::filesystem::exists(import.bag)) GTEST_SKIP() << "no " << import.bag;
+    import.out = scratch_.path("ros2.rawlog");
+    import_bag(import);
+    EXPECT_TRUE(test::contents(import.out) == ros1) << ending;
+  }
 }
 
 }  // namespace

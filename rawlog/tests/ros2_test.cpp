@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdio>
 #include <map>
 
 #include "foucault/core/constants.h"
@@ -25,6 +26,7 @@ using test::packed;
 using test::part;
 using test::Scratch;
 using ::testing::AllOf;
+using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
@@ -695,6 +697,89 @@ TEST_F(Rosbag2, VelocitiesEastNorthUp) {
   const GnssFix fix = all<GnssFix>().at(0);
   EXPECT_LT((*fix.velocity_n - Eigen::Vector3d(5, 3, 0.5)).norm(), 1e-6);
   EXPECT_NEAR(fix.velocity_covariance(0, 0), 0.09, 1e-6);
+}
+
+/// With its checksum.
+std::string sentence(const std::string& text) {
+  unsigned sum = 0;
+  for (const char c : text) sum ^= static_cast<unsigned char>(c);
+  std::array<char, 8> end{};
+  std::snprintf(end.data(), end.size(), "*%02X\r\n", sum);
+  return "$" + text + end.data();
+}
+
+class Sentences : public Rosbag2 {
+ protected:
+  static std::vector<Topic> with_nmea() {
+    return {topics()[0], {3, "/nmea", "nmea_msgs/msg/Sentence", ""}};
+  }
+  /// `recorded_ns` behind the start, at which it is 05:20:00.
+  static Message nmea(int64_t recorded_ns, const std::string& text) {
+    const int64_t t_ns = kStart + recorded_ns;
+    return {3, t_ns, header(t_ns, "gps").put(sentence(text)).bytes()};
+  }
+  static std::vector<Message> imu_alone() {
+    std::vector<Message> messages = drive();
+    messages.erase(std::remove_if(messages.begin(), messages.end(),
+                                  [](const Message& m) { return m.topic == 2; }),
+                   messages.end());
+    return messages;
+  }
+};
+
+TEST_F(Sentences, FixesByTheirOwnTime) {
+  std::vector<Message> messages = imu_alone();
+  for (const int tenths : {1, 3, 5}) {
+    const std::string time = "052000." + std::to_string(tenths) + "0";
+    messages.push_back(nmea(100'000'000 * tenths + 60'000'000,
+                            "GNGGA," + time + ",4830.00,N,00915.00,E,4,12,0.5,300.0,M,48.0,M,,"));
+    messages.push_back(nmea(100'000'000 * tenths + 61'000'000,
+                            "GNRMC," + time + ",A,4830.00,N,00915.00,E,10.0,90.0,150422,,,A"));
+  }
+  write("drive", messages, false, with_nmea());
+  const ImportSummary summary = import_bag(options_);
+  EXPECT_EQ(summary.gnss.written, 3);
+  EXPECT_EQ(summary.qualities.at(FixQuality::fixed_rtk), 3);
+  EXPECT_THAT(summary.gnss.notices, Contains(HasSubstr("stamps are the receiver's")));
+  const GnssFix fix = all<GnssFix>().at(0);
+  EXPECT_EQ(fix.t_ns, kStart + 100'000'000);
+  EXPECT_NEAR(fix.antenna.longitude, 9.25 * kDegree, 1e-15);
+  EXPECT_EQ(fix.antenna.height, 348);
+  EXPECT_NEAR(fix.velocity_n->y(), 10 * 1852.0 / 3600, 1e-9);
+  EXPECT_THAT(scratch_.names(), ElementsAre("drive", "out.rawlog"));
+}
+
+/// The day is that of the recording, unless the sentence is of the evening before.
+TEST_F(Sentences, WithoutADate) {
+  std::vector<Message> messages = imu_alone();
+  const int64_t to_midnight_ns = (18 * 3600 + 40 * 60) * int64_t{1'000'000'000};
+  for (Message& m : messages) {
+    m.recorded_ns += to_midnight_ns - 500'000'000;
+    m.bytes = imu_message(m.recorded_ns);
+  }
+  messages.push_back(nmea(to_midnight_ns + 10'000'000,
+                          "GPGGA,235959.90,4830.00,N,00915.00,E,1,12,0.5,300.0,M,48.0,M,,"));
+  write("drive", messages, false, with_nmea());
+  import_bag(options_);
+  EXPECT_EQ(all<GnssFix>().at(0).t_ns, kStart + to_midnight_ns - 100'000'000);
+}
+
+TEST_F(Sentences, FixesComeFirstUnlessTheTopicIsGiven) {
+  std::vector<Topic> more = topics();
+  more.push_back(with_nmea()[1]);
+  std::vector<Message> messages = drive();
+  messages.push_back(
+      nmea(600'000'000, "GPGGA,052000.50,4830.00,N,00915.00,E,5,12,0.5,300.0,M,48.0,M,,"));
+  messages.push_back({3, kStart, "\0\1\0\0 cut"});
+  write("drive", messages, false, more);
+  EXPECT_EQ(import_bag(options_).gnss.written, 3);
+  options_.gnss_topic = "/nmea";
+  EXPECT_THAT(data_error(), AllOf(HasSubstr("drive: message "), HasSubstr("--skip-bad-rows")));
+  const ImportSummary summary = rest();
+  EXPECT_EQ(summary.qualities.at(FixQuality::float_rtk), 1);
+  EXPECT_THAT(summary.gnss.notices, Contains(HasSubstr("1 damaged messages left out")));
+  options_.gnss_topic = "/imu";
+  EXPECT_THAT(usage_error(), HasSubstr("--gnss-topic /imu"));
 }
 
 }  // namespace

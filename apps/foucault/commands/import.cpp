@@ -1,4 +1,6 @@
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <iterator>
 #include <utility>
 #include <vector>
 
@@ -8,32 +10,44 @@ namespace foucault::app {
 namespace {
 
 constexpr Command kFormats[] = {
-    {"i2nav", "Text files of the i2Nav group (.txt, .pos, .nav)", declare_import_i2nav},
-    {"rtklib", "A solution of RTKLIB (.pos) and an IMU table", declare_import_rtklib},
+    {"auto", "Any of these: recognizes a file by its content", declare_import_auto},
     {"csv", "Tables in columns, told by a mapping", declare_import_csv},
-    {"nmea", "NMEA 0183 of a receiver, and an IMU table", declare_import_nmea},
-    {"ulog", "A ULog of PX4: IMU and GNSS of an autopilot", declare_import_ulog},
-    {"ubx", "UBX of a u-blox receiver, with its own IMU or a table", declare_import_ubx},
+    {"rtklib", "A solution of RTKLIB (.pos) and an IMU table", declare_import_rtklib},
     {"rinex", "Raw observations (RINEX), made to fixes by RTKLIB", declare_import_rinex},
+    {"nmea", "NMEA 0183 of a receiver, and an IMU table", declare_import_nmea},
+    {"ubx", "UBX of a u-blox receiver, with its own IMU or a table", declare_import_ubx},
+    {"novatel", "Logs of a NovAtel receiver: IMU, GNSS and INS", declare_import_novatel},
     {"bag", "A recording of ROS 1 or 2, MCAP: topics of an IMU and a receiver", declare_import_bag},
+    {"ulog", "A ULog of PX4: IMU and GNSS of an autopilot", declare_import_ulog},
+    {"dataflash", "A DataFlash log of ArduPilot: IMU and GNSS of an autopilot",
+     declare_import_dataflash},
+    {"i2nav", "Text files of the i2Nav group (.txt, .pos, .nav)", declare_import_i2nav},
 };
 
 constexpr const char* kExamples =
     "\nExamples:\n"
-    "  foucault import i2nav --imu ADIS16465.txt --gnss GNSS_RTK.pos --reference truth.nav \\\n"
-    "      --gps-week 2017 --lever-arm -0.073,0.302,0.087 --out trip.rawlog\n"
+    "  foucault import auto drive.bag --lever-arm 0.3,0,-0.5 --out drive.rawlog\n"
+    "  foucault import csv --guess imu.csv gnss.csv --out drive.yaml\n"
+    "  foucault import csv --mapping drive.yaml --out drive.rawlog\n"
     "  foucault import rtklib --gnss drive.pos --imu imu.csv --mapping drive.yaml --out "
     "drive.rawlog\n"
-    "  foucault import csv --mapping drive.yaml --out drive.rawlog\n"
+    "  foucault import rinex --rover rover.obs --base base.obs --nav day.nav --imu imu.csv \\\n"
+    "      --mapping drive.yaml --out drive.rawlog\n"
     "  foucault import nmea --gnss drive.nmea --imu imu.csv --mapping drive.yaml --out "
     "drive.rawlog\n"
-    "  foucault import ulog flight.ulg --lever-arm 0.1,0,-0.2 --out flight.rawlog\n"
-    "  foucault import bag drive.bag --lever-arm 0.3,0,-0.5 --out drive.rawlog\n"
     "  foucault import ubx drive.ubx --lever-arm 0.3,0,-0.5 --out drive.rawlog\n"
-    "  foucault import rinex --rover rover.obs --base base.obs --nav day.nav --imu imu.csv \\\n"
-    "      --mapping drive.yaml --out drive.rawlog";
+    "  foucault import novatel drive.gps --lever-arm 0.3,0,-0.5 --out drive.rawlog\n"
+    "  foucault import ulog flight.ulg --lever-arm 0.1,0,-0.2 --out flight.rawlog\n"
+    "  foucault import i2nav --imu ADIS16465.txt --gnss GNSS_RTK.pos --reference truth.nav \\\n"
+    "      --gps-week 2017 --lever-arm -0.073,0.302,0.087 --out trip.rawlog";
 
 }  // namespace
+
+const Command* find_import(const std::string& name) {
+  const auto* found = std::find_if(std::begin(kFormats), std::end(kFormats),
+                                   [&](const Command& format) { return name == format.name; });
+  return found == std::end(kFormats) ? nullptr : found;
+}
 
 std::function<void(Call&)> declare_import(CLI::App& app) {
   app.require_subcommand(1);

@@ -18,6 +18,12 @@ std::function<void(Call&)> declare_import_ulog(CLI::App& app);
 std::function<void(Call&)> declare_import_bag(CLI::App& app);
 std::function<void(Call&)> declare_import_ubx(CLI::App& app);
 std::function<void(Call&)> declare_import_rinex(CLI::App& app);
+std::function<void(Call&)> declare_import_novatel(CLI::App& app);
+std::function<void(Call&)> declare_import_dataflash(CLI::App& app);
+std::function<void(Call&)> declare_import_auto(CLI::App& app);
+
+/// The format of that name; null if this program has none.
+const Command* find_import(const std::string& name);
 
 inline constexpr const char* kLeverArmHelp =
     "IMU to antenna along the vehicle's forward, right, down [m]: X,Y,Z";

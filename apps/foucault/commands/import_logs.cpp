@@ -4,27 +4,41 @@
 
 #include "arguments.h"
 #include "foucault/rawlog/import_bag.h"
+#include "foucault/rawlog/import_dataflash.h"
 #include "foucault/rawlog/import_ulog.h"
 #include "import_formats.h"
 
 /// Logs that hold all sensors.
 namespace foucault::app {
 
-std::function<void(Call&)> declare_import_ulog(CLI::App& app) {
+/// Logs of autopilots, which know their lever arm.
+template <class Import>
+std::function<void(Call&)> declare_autopilot(CLI::App& app,
+                                             rawlog::ImportSummary (*import)(const Import&),
+                                             const char* log_help, const char* parameter) {
   struct Options {
-    rawlog::UlogImport import;
+    Import import;
     std::optional<std::string> lever_arm;
   };
   const auto o = std::make_shared<Options>();
-  app.add_option("log", o->import.log, "ULog of PX4 (.ulg, or .gz)")->required();
+  app.add_option("log", o->import.log, log_help)->required();
   app.add_option("--lever-arm", o->lever_arm,
-                 std::string(kLeverArmHelp) + "; without it EKF2_GPS_POS of the log");
+                 std::string(kLeverArmHelp) + "; without it " + parameter + " of the log");
   add_import_options(app, o->import);
-  return [o](Call& call) {
+  return [o, import](Call& call) {
     if (o->lever_arm) o->import.lever_arm = parse_vector3("--lever-arm", *o->lever_arm);
     o->import.progress = call.console.progress_of("importing");
-    report_import(call.console, rawlog::import_ulog(o->import), o->import.out);
+    report_import(call.console, import(o->import), o->import.out);
   };
+}
+
+std::function<void(Call&)> declare_import_ulog(CLI::App& app) {
+  return declare_autopilot(app, rawlog::import_ulog, "ULog of PX4 (.ulg, or .gz)", "EKF2_GPS_POS");
+}
+
+std::function<void(Call&)> declare_import_dataflash(CLI::App& app) {
+  return declare_autopilot(app, rawlog::import_dataflash, "DataFlash log (.bin, .log, or .gz)",
+                           "GPS_POS1");
 }
 
 std::function<void(Call&)> declare_import_bag(CLI::App& app) {
@@ -39,7 +53,7 @@ std::function<void(Call&)> declare_import_bag(CLI::App& app) {
   app.add_option("--imu-topic", o->import.imu_topic,
                  "Of sensor_msgs/Imu; needed if there are several");
   app.add_option("--gnss-topic", o->import.gnss_topic,
-                 "Of sensor_msgs/NavSatFix; needed if there are several");
+                 "Of sensor_msgs/NavSatFix, or nmea_msgs/Sentence; needed if there are several");
   app.add_option("--velocity-topic", o->import.velocity_topic,
                  "Of geometry_msgs/TwistStamped, east, north, up, at the stamps of the fixes");
   app.add_option("--imu-axes", o->import.imu_axes,

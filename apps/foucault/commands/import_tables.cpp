@@ -1,8 +1,13 @@
 #include <CLI/CLI.hpp>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
 #include <memory>
 #include <optional>
 
 #include "arguments.h"
+#include "foucault/core/error.h"
+#include "foucault/rawlog/guess_mapping.h"
 #include "foucault/rawlog/import_csv.h"
 #include "foucault/rawlog/import_i2nav.h"
 #include "foucault/rawlog/import_nmea.h"
@@ -18,16 +23,18 @@ std::string mapping_help() {
   return describe_config(mapping);
 }
 
+template <class Import>
+struct MappedOptions {
+  Import import;
+  std::optional<std::string> lever_arm;
+};
+
 /// `rtklib`, `csv` and `nmea` take the same options.
 template <class Import>
 std::function<void(Call&)> declare_mapped(CLI::App& app,
                                           rawlog::ImportSummary (*import)(const Import&),
                                           const char* gnss_help, bool needs_mapping = true) {
-  struct Options {
-    Import import;
-    std::optional<std::string> lever_arm;
-  };
-  const auto o = std::make_shared<Options>();
+  const auto o = std::make_shared<MappedOptions<Import>>();
   app.add_option("--mapping", o->import.mapping,
                  "YAML that names columns, units, axes, clocks and the lever arm")
       ->required(needs_mapping);
@@ -45,6 +52,28 @@ std::function<void(Call&)> declare_mapped(CLI::App& app,
     o->import.progress = call.console.progress_of("importing");
     report_import(call.console, import(o->import), o->import.out);
   };
+}
+
+/// Writes a new file, or to the terminal. What somebody corrected by hand is not written over.
+void write_mapping(Console& console, const std::string& text, const std::string& out) {
+  if (out.empty()) {
+    std::cout << text;
+    return;
+  }
+  if (std::filesystem::exists(out)) {
+    throw UsageError("'" + out + "' is there already; name another file, or remove it");
+  }
+  std::ofstream file(out, std::ios::binary);
+  if (!(file << text << std::flush)) {
+    throw DataError("'" + out + "' cannot be written; check the folder");
+  }
+  console.say("written    " + out + "; check what is marked `not sure` and `to be told`");
+}
+
+void guess_and_write(Console& console, const std::vector<std::string>& files,
+                     const std::string& out) {
+  const std::string folder = std::filesystem::path(out).parent_path().string();
+  write_mapping(console, rawlog::mapping_text(rawlog::guess_mapping(files, folder)), out);
 }
 
 }  // namespace
@@ -79,8 +108,22 @@ std::function<void(Call&)> declare_import_rtklib(CLI::App& app) {
 }
 
 std::function<void(Call&)> declare_import_csv(CLI::App& app) {
-  return declare_mapped<rawlog::CsvImport>(app, rawlog::import_csv,
-                                           "GNSS table, instead of the mapping's");
+  const auto import = declare_mapped<rawlog::CsvImport>(
+      app, rawlog::import_csv, "GNSS table, instead of the mapping's", false);
+  const auto files = std::make_shared<std::vector<std::string>>();
+  app.add_option("--guess", *files,
+                 "Instead of an import: write a mapping of these tables to start from, to --out "
+                 "(.yaml) or to the terminal");
+  app.get_option("--out")->required(false);
+  return [&app, import, files](Call& call) {
+    const std::string out = app.get_option("--out")->as<std::string>();
+    if (!files->empty()) return guess_and_write(call.console, *files, out);
+    if (app.get_option("--mapping")->empty()) {
+      throw UsageError("--mapping is required; --guess FILE... writes one to start from");
+    }
+    if (out.empty()) throw UsageError("--out is required");
+    import(call);
+  };
 }
 
 std::function<void(Call&)> declare_import_nmea(CLI::App& app) {

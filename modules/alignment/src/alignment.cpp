@@ -12,6 +12,7 @@
 #include "foucault/core/time.h"
 #include "foucault/geodesy/course.h"
 #include "foucault/geodesy/local_frame.h"
+#include "foucault/geodesy/reach.h"
 #include "foucault/geodesy/wgs84.h"
 #include "foucault/state/vehicle_attitude.h"
 #include "given_start.h"
@@ -146,6 +147,7 @@ class Aligner::Impl {
  private:
   bool all_given() const { return options_.mode == "given"; }
   void note_hole(const ImuIncrement& increment);
+  void forget_all();
   void take(const Step& step);
 
   void try_to_begin();
@@ -197,13 +199,18 @@ class Aligner::Impl {
 
   GivenStart given_start_;
 
-  std::optional<int64_t> first_increment_ns_, last_increment_ns_, first_fix_ns_, last_fix_ns_;
+  std::optional<int64_t> first_increment_ns_, last_increment_ns_, first_fix_ns_;
+  std::optional<GnssFix> last_fix_;
 };
 
+/// A fix that no vehicle reaches from the one before it has come through FixGuard: those before it
+/// were wrong.
 void Aligner::Impl::add(const GnssFix& fix) {
   if (!first_fix_ns_) first_fix_ns_ = fix.t_ns;
-  last_fix_ns_ = fix.t_ns;
+  const bool elsewhere = last_fix_ && !geodesy::within_reach(*last_fix_, fix);
+  last_fix_ = fix;
   if (initial_) return;
+  if (elsewhere) forget_all();
   if (all_given()) {
     if (const auto start = given_start_.add(fix, mounting_, given_, noise_))
       accept(*start, "as given");
@@ -241,7 +248,10 @@ void Aligner::Impl::note_hole(const ImuIncrement& increment) {
   if (!last_increment_ns_) return;
   if (seconds_between(*last_increment_ns_, increment.t_begin_ns) <= kLargestHole) return;
   if (bank_.started() && belief_ && belief_->sigma <= kLargestSigma) conclude(kLargestSigma);
-  if (initial_) return;
+  if (!initial_) forget_all();
+}
+
+void Aligner::Impl::forget_all() {
   rest_ = RestDetector(options_.min_rest_s, options_.max_rest_s);
   track_ = Track(options_.max_rest_s);
   forget_drive();
@@ -596,7 +606,7 @@ std::optional<std::string> Aligner::Impl::wrong_up(const Vector3d& up_b) const {
 int64_t Aligner::Impl::earliest_start_ns() const {
   if (given_start_.fix()) return given_start_.fix()->t_ns;
   if (!last_increment_ns_) {
-    return last_fix_ns_ ? *last_fix_ns_ - kNanosecondsPerSecond : INT64_MIN;
+    return last_fix_ ? last_fix_->t_ns - kNanosecondsPerSecond : INT64_MIN;
   }
   return all_given() ? *last_increment_ns_ : std::min(track_.begin_ns(), *last_increment_ns_);
 }
@@ -618,11 +628,11 @@ std::string Aligner::Impl::why_not() const {
       "heading_deg";
   if (!first_increment_ns_) return head + "there is no IMU data";
   if (!first_fix_ns_) return head + "there is no usable GNSS fix";
-  if (*last_fix_ns_ < *first_increment_ns_ || *last_increment_ns_ < *first_fix_ns_) {
+  if (last_fix_->t_ns < *first_increment_ns_ || *last_increment_ns_ < *first_fix_ns_) {
     return head + fmt::format(
                       "GNSS ({} to {}) and IMU ({} to {}) do not overlap in "
                       "time; check the time systems and offsets of the import",
-                      utc_text(*first_fix_ns_), utc_text(*last_fix_ns_),
+                      utc_text(*first_fix_ns_), utc_text(last_fix_->t_ns),
                       utc_text(*first_increment_ns_), utc_text(*last_increment_ns_));
   }
   if (all_given()) return head + "there are fewer than two fixes within the IMU data";

@@ -451,10 +451,10 @@ TEST(Alignment, ABiasBeyondItsPriorIsFound) {
 
 /// All filters begin from it.
 TEST(Alignment, AWrongFirstFixIsLeftOut) {
-  for (const double rest_s : {0.0, 20.0}) {
+  for (const auto& [rest_s, away] : {std::pair(0.0, 100.0), {20.0, 100.0}, {0.0, 6e4}}) {
     Sensors sensors = industrial_sensors();
-    sensors.spoil = [](double t, GnssFix& fix) {
-      if (t < 0.5) fix.antenna = geodesy::LocalFrame(fix.antenna).to_geodetic({0, 100, 0});
+    sensors.spoil = [east = away](double t, GnssFix& fix) {
+      if (t < 0.5) fix.antenna = geodesy::LocalFrame(fix.antenna).to_geodetic({0, east, 0});
     };
     const Drive drive = rest_s > 0 ? rest_and_drive(rest_s, 0.4) : drive_without_rest(0.4);
     const DriveSimulator simulator(drive, sensors);

@@ -36,6 +36,7 @@ FixGuard::Verdict Examination::admit(const GnssFix& given) {
   if (!options_.allows(fix)) return verdict;
   rest_.add(fix);
   reference_.add(fix);
+  velocities_.add(fix);
   plausibility_.watch(fix);
   return verdict;
 }
@@ -61,6 +62,7 @@ LogFacts Examination::facts() const {
   facts.rest = rest_.facts();
   facts.commutation = commutation_.facts();
   facts.reference = reference_.facts();
+  facts.velocities = velocities_.facts();
   facts.turns = plausibility_.turns();
   facts.accelerations = plausibility_.accelerations();
   return facts;

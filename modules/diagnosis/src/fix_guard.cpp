@@ -9,37 +9,18 @@
 #include "foucault/core/median.h"
 #include "foucault/core/position.h"
 #include "foucault/core/time.h"
-#include "foucault/geodesy/local_frame.h"
+#include "foucault/geodesy/reach.h"
 
 namespace foucault::diagnosis {
 namespace {
 
-/// Receivers give no position beyond 1000 knots, 515 m/s (export rules); twice that.
-constexpr double kFastest = 1000;  // [m/s]
-/// Chosen: nearer errors are for the judge of innovations, who knows the state.
-constexpr double kFarAway = 10000;  // [m]
 /// Chosen: receivers that report a wrong place do so for seconds, until they have a fix.
 constexpr double kLongestContradiction = 60;  // [s]
 /// Chosen, for tables at the rate of the IMU (50 Hz) and receivers with few digits: two of ten may
 /// be cut short by lost fixes. Of a receiver in motion no position comes twice.
 constexpr std::size_t kRuns = 10;
 constexpr int kEnoughRuns = 8;
-constexpr int kOften = 3;               // fixes of one position, at rest
-constexpr double kEarthRadius = 6.4e6;  // [m], smallest
-
-/// A lower bound of the way between two positions, good also across the Earth [m].
-double distance(const Geodetic& a, const Geodetic& b) {
-  const double north = std::sin((b.latitude - a.latitude) / 2);
-  const double east = std::sin((b.longitude - a.longitude) / 2);
-  const double h = north * north + std::cos(a.latitude) * std::cos(b.latitude) * east * east;
-  const double chord = 2 * kEarthRadius * std::sqrt(h);
-  return std::hypot(chord, b.height - a.height);
-}
-
-bool reaches(const GnssFix& a, const GnssFix& b) {
-  const double dt = std::abs(seconds_between(a.t_ns, b.t_ns));
-  return distance(a.antenna, b.antenna) <= kFarAway + kFastest * dt;
-}
+constexpr int kOften = 3;  // fixes of one position, at rest
 
 bool velocity_is_valid(const GnssFix& fix) {
   return fix.velocity_n->allFinite() && fix.velocity_covariance.allFinite() &&
@@ -90,7 +71,7 @@ bool HeldPositions::repeats(const GnssFix& fix) {
 
 void HeldPositions::end_run(const GnssFix& next) {
   constexpr double kWalking = 1;  // [m/s]
-  const double way = distance(first_->antenna, next.antenna);
+  const double way = geodesy::least_distance(first_->antenna, next.antenna);
   const double time = std::abs(seconds_between(first_->t_ns, next.t_ns));
   runs_.push_back({fixes_, way > kWalking * time});
   if (runs_.size() > kRuns) runs_.pop_front();
@@ -110,13 +91,13 @@ bool HeldPositions::is_held() const {
 }
 
 void FixGuard::go_on(std::optional<Place>& place, const GnssFix& fix) {
-  if (!place || !reaches(place->last, fix)) place = Place{fix, fix.t_ns, 0};
+  if (!place || !geodesy::within_reach(place->last, fix)) place = Place{fix, fix.t_ns, 0};
   place->last = fix;
   ++place->fixes;
 }
 
 bool FixGuard::in_reach(const GnssFix& fix) {
-  if (!believed_ || reaches(believed_->last, fix)) {
+  if (!believed_ || geodesy::within_reach(believed_->last, fix)) {
     go_on(believed_, fix);
     doubted_.reset();
     return true;

@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kAcceleration = 8;  // [m/s^2], the grip of a road (0.8 g)
 constexpr double kScreenSigmas = 5;  // three fixes' sigmas summed: one in two million at least
+constexpr int kEnough = 3;           // chosen; with the next and the first, five in a row
 constexpr double kLongestWait = 3;   // [s]; chosen: fixes at 1 Hz, of which one is missing
 
 /// Distance of a fix from the line through two others, which a vehicle can explain by its
@@ -35,6 +36,11 @@ Deviation deviation(const GnssFix& fix, const GnssFix& a, const GnssFix& b) {
           0.5 * kAcceleration * std::abs(to_a * to_b) + kScreenSigmas * sigma};
 }
 
+bool in_line(const GnssFix& fix, const GnssFix& a, const GnssFix& b) {
+  const Deviation d = deviation(fix, a, b);
+  return !(d.horizontal > d.explained);
+}
+
 }  // namespace
 
 std::optional<FixScreen::Screened> FixScreen::next(bool all) {
@@ -46,13 +52,25 @@ std::optional<FixScreen::Screened> FixScreen::next(bool all) {
     const bool waited = seconds_between(fix->t_ns, stamp(waiting_.back())) > kLongestWait;
     if (before_ && !after && !waited && !all) return std::nullopt;
     if (before_ && after) {
-      const Deviation d = deviation(*fix, *before_, *after);
-      screened.plausible = !(d.horizontal > d.explained);
+      screened.plausible = in_line(*fix, *before_, *after) || doubted_agree(*fix, *after);
     }
-    if (screened.plausible) before_ = *fix;
+    if (screened.plausible) believe(*fix);
   }
   waiting_.pop_front();
   return screened;
+}
+
+/// Of fixes that do not go with the last plausible one, those in a row that go with each other.
+bool FixScreen::doubted_agree(const GnssFix& fix, const GnssFix& after) {
+  const bool agrees = doubted_ && in_line(fix, *doubted_, after);
+  agreeing_ = agrees ? agreeing_ + 1 : 0;
+  doubted_ = fix;
+  return agreeing_ == kEnough;
+}
+
+void FixScreen::believe(const GnssFix& fix) {
+  before_ = fix;
+  doubted_.reset();
 }
 
 std::optional<GnssFix> FixScreen::second_fix() const {
@@ -65,6 +83,9 @@ std::optional<GnssFix> FixScreen::second_fix() const {
 
 std::deque<Measurement> FixScreen::take_all() { return std::exchange(waiting_, {}); }
 
-void FixScreen::restart() { before_.reset(); }
+void FixScreen::restart() {
+  before_.reset();
+  doubted_.reset();
+}
 
 }  // namespace foucault::diagnosis

@@ -127,6 +127,53 @@ void judge_sigmas(const LogFacts& facts, Judgement& out) {
   out.ok("sigmas", range);
 }
 
+/// What the velocities must be for the way to be k times as long.
+std::string velocity_remedy(const VelocityFacts& v) {
+  struct Unit {
+    double scale;
+    const char* remedy;
+  };
+  constexpr Unit kUnits[] = {{1852.0 / 3600, "velocity_unit: knots"},
+                             {1 / 3.6, "velocity_unit: km_h"},
+                             {0.01, "velocity_unit: cm_s"},
+                             {0.001, "velocity_unit: mm_s"}};
+  constexpr double kNear = 0.1;
+  if (!v.mirrored && std::abs(v.angle) < kNear) {
+    for (const Unit& unit : kUnits) {
+      if (std::abs(v.scale / unit.scale - 1) < kNear) {
+        return fmt::format("gnss: {{{}}} in the import's mapping", unit.remedy);
+      }
+    }
+  }
+  return "correct columns, signs and unit of the velocities in the import, or leave them out "
+         "(gnss: {velocity: false})";
+}
+
+std::string velocity_text(const VelocityFacts& v) {
+  std::string text = fmt::format(
+      "the way between fixes is {:.3g} times as long as their "
+      "velocities make it",
+      v.scale);
+  const double degrees = v.angle / kDegree;
+  if (v.mirrored && std::abs(std::abs(degrees) - 90) < 10) {
+    return text + ", and north and east seem to be exchanged";
+  }
+  if (v.mirrored) return text + ", and mirrored: a sign is wrong";
+  return text + fmt::format(", {:.0f} deg to the right of them", degrees);
+}
+
+/// Velocities that are not used do no harm, but say what the import makes of the file.
+void judge_velocities(const LogFacts& facts, Judgement& out) {
+  constexpr int64_t kEnough = 20;
+  constexpr double kHarmless = 0.1;  // chosen: latencies and filters of receivers make less of it
+  constexpr double kSigmas = 5;
+  const VelocityFacts& v = facts.velocities;
+  if (v.pairs < kEnough || v.sigma > kHarmless) return;
+  const double off = std::max({std::abs(v.scale - 1), std::abs(v.angle), v.mirrored ? 1.0 : 0.0});
+  if (off < std::max(kHarmless, kSigmas * v.sigma)) return out.ok("velocities", velocity_text(v));
+  out.warn("velocities", velocity_text(v), velocity_remedy(v));
+}
+
 void judge_lever_arm(const LogFacts& facts, Judgement& out) {
   if (!facts.lever_arm_m) return;
   const std::string text = fmt::format("{:.3f} m", *facts.lever_arm_m);
@@ -367,6 +414,7 @@ std::vector<Finding> judge(const LogFacts& facts, const imu::ImuNoise& configure
   judge_date(facts, out);
   judge_reference(facts, out);
   judge_sigmas(facts, out);
+  judge_velocities(facts, out);
   judge_lever_arm(facts, out);
   judge_force(facts, out);
   judge_axes(facts, out);

@@ -41,6 +41,19 @@ TEST_F(FixScreenTest, WhatItsNeighboursDoNotReachIsTold) {
   EXPECT_THAT(plausible_, ElementsAre(true, false, true, true));
 }
 
+TEST_F(FixScreenTest, FiveThatAgreeAreBelievedBeforeAWrongFirstOne) {
+  add(0, {60e3, 0, 0});
+  for (int i = 1; i <= 6; ++i) add(i, {0, 0, 0});
+  take(true);
+  EXPECT_THAT(plausible_, ElementsAre(true, false, false, false, true, true, true));
+}
+
+TEST_F(FixScreenTest, OutliersDoNotAgree) {
+  for (int i = 0; i < 10; ++i) add(i, {i % 2 == 0 ? 0.0 : 50.0 + 10 * i, 0, 0});
+  take(true);
+  for (int i = 1; i < 9; i += 2) EXPECT_FALSE(plausible_[static_cast<std::size_t>(i)]) << i;
+}
+
 /// 8 m/s^2 bend a way of two seconds by 4 m.
 TEST_F(FixScreenTest, AnAccelerationExplainsABend) {
   for (const double bend : {3.9, 4.9 + 1.5}) {

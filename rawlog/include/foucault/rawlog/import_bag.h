@@ -10,14 +10,18 @@ namespace foucault::rawlog {
 
 /// A recording of ROS: a bag of ROS 1 (format 2.0), MCAP, or rosbag 2, its folder or a file of it
 /// (sqlite3), plain or compressed; which, tell the first bytes. Messages are read by the
-/// definitions in it, else by those of ROS 2's own types. IMU: what has angular_velocity and
-/// linear_acceleration, as sensor_msgs/Imu; on the sensor's axes,
-///   which look forward, left, up (REP 103) unless told otherwise.
+/// definitions in it, else by those of ROS 2's own types.
+///
+/// IMU: what has angular_velocity and linear_acceleration, as sensor_msgs/Imu; on the sensor's
+///   axes, which look forward, left, up (REP 103) unless told otherwise.
+///
 /// GNSS: what has latitude, longitude [deg] and altitude [m, above the ellipsoid], as
 ///   sensor_msgs/NavSatFix with its status (corrections from satellites or stations: differential)
-///   and covariance.
+///   and covariance; where there is none, sentences of NMEA (nmea_msgs/Sentence), by their time.
+///
 /// Velocity: geometry_msgs/TwistStamped or TwistWithCovarianceStamped, east, north, up, of the same
 ///   stamps as the fixes.
+///
 /// Time: the stamp of the message's header; where that is zero, of the recording.
 struct BagImport : ImportOptions {
   std::string bag;                        ///< file or folder

@@ -58,6 +58,7 @@ class Examination {
   RestWatch rest_;
   CommutationWatch commutation_;
   ReferenceWatch reference_;
+  VelocityWatch velocities_;
   Plausibility plausibility_;
 };
 

@@ -40,8 +40,8 @@ class HeldPositions {
 /// are those that cannot be a position of this recording:
 /// - no position at all, see is_position();
 /// - held: the position of the fix before, in a recording that repeats positions;
-/// - out of reach: further from the last good one than kFarAway and what the fastest vehicle drives
-///   in between. Where one place contradicts another the one that more fixes in a row give is
+/// - out of reach of the last good one, see geodesy::within_reach(). Where one place contradicts
+/// another the one that more fixes in a row give is
 ///   believed, at the latest after a minute; so a wrong first fix costs one good one.
 /// A velocity that is no number, or has no sigma, is taken off a good position.
 class FixGuard {

@@ -10,7 +10,7 @@ namespace foucault::diagnosis {
 /// Tells, before there is a state to predict fixes from, which of them no vehicle reaches from
 /// their neighbours: those off a straight line between them by more than kAcceleration explains.
 /// Holds measurements back until the next fix, at most kLongestWait. The first fix passes; if it is
-/// an outlier, some seconds of good ones go with it.
+/// an outlier, good ones go with it until five in a row agree with each other.
 class FixScreen {
  public:
   struct Screened {
@@ -29,10 +29,14 @@ class FixScreen {
   void restart();
 
  private:
+  bool doubted_agree(const GnssFix& fix, const GnssFix& after);
+  void believe(const GnssFix& fix);
   std::optional<GnssFix> second_fix() const;
 
   std::deque<Measurement> waiting_;
-  std::optional<GnssFix> before_;  ///< the last plausible one
+  std::optional<GnssFix> before_;   ///< the last plausible one
+  std::optional<GnssFix> doubted_;  ///< the last since then, if there is one
+  int agreeing_ = 0;                ///< in a row, of these
 };
 
 }  // namespace foucault::diagnosis

@@ -12,6 +12,7 @@
 #include "foucault/diagnosis/sigma_facts.h"
 #include "foucault/diagnosis/stream_facts.h"
 #include "foucault/diagnosis/turn_match.h"
+#include "foucault/diagnosis/velocity_facts.h"
 
 namespace foucault::diagnosis {
 
@@ -24,10 +25,11 @@ struct LogFacts {
   SigmaFacts sigmas;
   std::optional<double> lever_arm_m;  ///< of the first fix
   bool lever_arm_known = false;
-  ForceFacts force;                   ///< its mean forward, right, down
+  ForceFacts force;  ///< its mean forward, right, down
   RestFacts rest;
   CommutationFacts commutation;
   ReferenceFacts reference;
+  VelocityFacts velocities;
   std::optional<TurnMatch> turns;
   std::optional<AccelerationFit> accelerations;
 };
