@@ -110,6 +110,7 @@ size_t width_of(const Fields& fields, size_t fewest) {
 /// separator with blanks around it is no name.
 bool fits_rows(const Header& header, TextTable& table) {
   const auto is_sign = [](const std::string& name) { return name == "," || name == ";"; };
+  if (header.names.size() < 2) return false;
   if (std::any_of(header.names.begin(), header.names.end(), is_sign)) return false;
   const std::vector<Fields> rows = first_rows(table, header.line, header.separator, 2);
   return std::any_of(rows.begin(), rows.end(), [&](const Fields& row) {
