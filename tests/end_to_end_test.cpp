@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -172,6 +173,28 @@ TEST_F(Trip, TheWrittenConfigurationGivesTheSameRunAgain) {
   EXPECT_EQ(folder_.text("a/solution.csv"), folder_.text("b/solution.csv"));
   ASSERT_EQ(foucault({"run", log_, "--no-report", "--out", folder_ / "c"}).exit_code, 0);
   EXPECT_NE(folder_.text("a/solution.csv"), folder_.text("c/solution.csv"));
+}
+
+/// An offset of 0.2 s that is none, told as known: the passes before the run take it back.
+TEST_F(Trip, TimeOffsetAndLeverArmAreEstimates) {
+  ASSERT_EQ(foucault({"run", log_, "--method", "full", "--set", "calibrate.time_offset=on", "--set",
+                      "calibrate.lever_arm=on", "--set", "calibrate.time_offset_s=0.2",
+                      "--no-report", "--out", folder_ / "a"})
+                .exit_code,
+            0);
+  const json calibration = metrics("a")["calibration"];
+  const json& offset = calibration["time_offset"];
+  EXPECT_EQ(offset["unit"], "s");
+  const double sigma = offset["sigma"][0];
+  EXPECT_LT(sigma, 0.01);
+  EXPECT_LT(std::abs(offset["value"][0].get<double>()), 5 * sigma);
+  const double given[] = {0.1, -0.3, -0.8};  // the whole arm, along forward, right, down
+  for (std::size_t i = 0; i < 3; ++i) {
+    const json& arm = calibration["lever_arm"];
+    EXPECT_LT(std::abs(arm["value"][i].get<double>() - given[i]),
+              5 * arm["sigma"][i].get<double>());
+  }
+  EXPECT_LT(metrics("a")["reference"]["horizontal_rmse_m"], 0.1);
 }
 
 TEST_F(Trip, OutputAtImuRateHasARowForEverySample) {

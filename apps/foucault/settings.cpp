@@ -30,9 +30,30 @@ void Settings::fields(ConfigFields& f) {
   f.section("output", output, "what is written");
 }
 
+namespace {
+
+/// Where the notes do not tell it, one that is there was given by somebody.
+bool lever_arm_is_known(const std::string& log, const rawlog::RecordingNotes& notes,
+                        const Settings& settings) {
+  if (notes.lever_arm != "not_told") return notes.lever_arm == "given";
+  return !rawlog::RawlogSource(log, imu::SampleKind::interval_mean, settings.rawlog)
+              .lever_arm()
+              .isZero();
+}
+
+}  // namespace
+
 Settings settings_for(const std::string& log, const Settings& settings) {
   Settings completed = settings;
-  completed.imu = settings.imu.completed_by(rawlog::read_notes(log).imu);
+  const rawlog::RecordingNotes notes = rawlog::read_notes(log);
+  completed.imu = settings.imu.completed_by(notes.imu);
+  constexpr double kGivenLeverArm = 0.05;  // [m]
+  constexpr double kUnknownLeverArm = 1;
+  std::optional<double>& sigma = completed.calibrate.lever_arm_sigma_m;
+  if (!sigma && settings.calibrate.lever_arm == "on") {
+    sigma = lever_arm_is_known(log, notes, settings) ? kGivenLeverArm : kUnknownLeverArm;
+  }
+  completed.rawlog.fix_delay_s = completed.calibrate.time_offset_s;
   return completed;
 }
 

@@ -150,8 +150,7 @@ std::string mapping_text(const MappingGuess& guess) {
     write_table(lines, "reference", guess.mapping.reference);
     write_positions(lines, guess.mapping.reference);
   }
-  const Eigen::Vector3d& arm = guess.mapping.lever_arm_m;
-  lines.top("lever_arm_m", fmt::format("[{}, {}, {}]", arm.x(), arm.y(), arm.z()));
+  lines.top("lever_arm_m", fmt::format("[{}]", fmt::join(guess.mapping.lever_arm_m, ", ")));
   return lines.text();
 }
 

@@ -193,6 +193,7 @@ class RawlogSource::Impl {
       : path_(path),
         options_(options),
         reorder_ns_(nanoseconds(options.reorder_s)),
+        fix_delay_ns_(nanoseconds(options.fix_delay_s)),
         overview_(OverviewScan(path, options).run()),
         lever_arm_told_(read_notes(path).lever_arm),
         mounting_{overview_.imu.q_v_s},
@@ -250,6 +251,7 @@ class RawlogSource::Impl {
   std::string path_;
   RawlogOptions options_;
   int64_t reorder_ns_;
+  int64_t fix_delay_ns_;
   Overview overview_;
   std::string lever_arm_told_;  ///< as RecordingNotes
   state::Mounting mounting_;
@@ -468,7 +470,8 @@ void RawlogSource::Impl::take_gps(const mrpt::obs::CObservationGPS& gps, int64_t
     fix->velocity_n.reset();
     skip_noted("velocity of CObservationGPS", kNotFinite, t_ns);
   }
-  fix_span_.add(t_ns);
+  fix->t_ns = t_ns - fix_delay_ns_;
+  fix_span_.add(fix->t_ns);
   if (add(*fix)) ++counts_.fixes;
 }
 
@@ -476,7 +479,8 @@ void RawlogSource::Impl::take_gps(const mrpt::obs::CObservationGPS& gps, int64_t
 void RawlogSource::Impl::take_velocity(const mrpt::obs::CObservationGPS& gps, int64_t t_ns) {
   const std::optional<rawlog::GroundVelocity> velocity = rawlog::decode_velocity(gps);
   if (!velocity) return skip(kGps, "no position");
-  for (auto it = others_.lower_bound(t_ns); it != others_.end() && it->first == t_ns; ++it) {
+  const int64_t fix_ns = t_ns - fix_delay_ns_;
+  for (auto it = others_.lower_bound(fix_ns); it != others_.end() && it->first == fix_ns; ++it) {
     auto* fix = std::get_if<GnssFix>(&it->second);
     if (fix == nullptr || fix->velocity_n) continue;
     fix->velocity_n = velocity->velocity_n;

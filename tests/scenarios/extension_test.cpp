@@ -31,7 +31,7 @@ class BeaconRange final : public measurement::Observation {
   BeaconRange(const Geodetic& beacon, double range) : beacon_(beacon), range_(range) {}
 
   std::string_view name() const override { return "beacon_range"; }
-  state::Linearized linearize(const state::NavState& x, const Eigen::Vector3d& /*rate_b*/,
+  state::Linearized linearize(const state::NavState& x, const measurement::MeanMotion& /*mean*/,
                               const state::Layout& layout) const override {
     const state::SlowBlock& temperature = *layout.find(kTemperature);
     const Eigen::Vector3d way_n =

@@ -16,6 +16,7 @@
 #include "foucault/core/units.h"
 #include "foucault/page/report_page.h"
 #include "foucault/rawlog/rawlog_source.h"
+#include "jobs/time_offset.h"
 #include "methods.h"
 
 namespace foucault::app {
@@ -202,10 +203,18 @@ std::vector<evaluation::ExperimentRun> experiment_runs(const EvaluationCase& eva
 namespace {
 
 /// With what the logs say, once the settings are known to be right.
-std::vector<EvaluationCase> with_notes(std::vector<EvaluationCase> cases) {
+std::vector<EvaluationCase> with_notes(std::vector<EvaluationCase> cases, Console& console) {
   for (const EvaluationCase& c : cases) experiment_runs(c);
+  std::map<std::string, double> offsets;  // they are the same for all methods
   for (EvaluationCase& c : cases) {
     c.settings = settings_for(c.log, c.settings);
+    const auto found = offsets.find(c.log);
+    if (found == offsets.end()) {
+      c.settings = with_time_offset(c.log, c.settings, console);
+      offsets.emplace(c.log, c.settings.calibrate.time_offset_s);
+    } else {
+      c.settings.calibrate.time_offset_s = c.settings.rawlog.fix_delay_s = found->second;
+    }
     if (c.imu == imu::ImuOptions::kAsRecorded) c.imu = c.settings.imu.preset;
   }
   return cases;
@@ -219,7 +228,7 @@ void check_logs(const std::vector<std::string>& logs, const Settings& settings) 
 
 Evaluation evaluate_what_is_there(const std::vector<EvaluationCase>& given, int threads,
                                   Console& console) {
-  const std::vector<EvaluationCase> cases = with_notes(given);
+  const std::vector<EvaluationCase> cases = with_notes(given, console);
   LogNotices notices;
   std::vector<evaluation::ExperimentRun> runs;
   for (const EvaluationCase& c : cases) {

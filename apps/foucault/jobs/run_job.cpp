@@ -12,6 +12,7 @@
 #include "foucault/export/text_file.h"
 #include "foucault/rawlog/rawlog_source.h"
 #include "jobs/run_output.h"
+#include "jobs/time_offset.h"
 #include "methods.h"
 #include "output_directory.h"
 #include "pages/run_page.h"
@@ -77,6 +78,25 @@ content::RunLabels labels(const RunJob& job, const std::string& config) {
           job.command_line, config};
 }
 
+/// As users know them: the whole offset, the whole lever arm along forward, right, down.
+std::vector<evaluation::CalibratedBlock> calibration(const state::Epoch& epoch,
+                                                     const Settings& settings,
+                                                     const rawlog::RawlogSource& source) {
+  const state::Layout layout = settings.calibrate.layout();
+  state::Epoch whole = epoch;
+  if (const state::SlowBlock* offset = layout.find(state::block::time_offset)) {
+    whole.slow[offset->index] += settings.calibrate.time_offset_s;
+  }
+  if (const state::SlowBlock* arm = layout.find(state::block::lever_arm)) {
+    const Eigen::Matrix3d R_v_b = source.mounting().q_v_b.toRotationMatrix();
+    const Eigen::Vector3d arm_b = source.lever_arm() + whole.slow.segment<3>(arm->index);
+    whole.slow.segment<3>(arm->index) = R_v_b * arm_b;
+    state::part(whole.covariance, *arm, *arm) =
+        (R_v_b * state::part(epoch.covariance, *arm, *arm) * R_v_b.transpose()).eval();
+  }
+  return evaluation::calibrated_blocks(whole, layout);
+}
+
 void write_report(const RunResult& result, content::RunReport& report,
                   const std::filesystem::path& folder, Console& console) {
   const StageTimer timer(Stage::draw);
@@ -93,7 +113,7 @@ RunResult run_into(const RunJob& job, const std::filesystem::path& folder, Conso
   std::optional<Profile> profile;
   if (job.profile) profile.emplace().add(Stage::start, process_cpu_s());
   const ResourceMeter meter;
-  Settings settings = settings_for(job.log, job.settings);
+  Settings settings = with_time_offset(job.log, settings_for(job.log, job.settings), console);
   const std::string config = dump_config(settings);
   const Method& method = find_method(job.method);
 
@@ -118,8 +138,7 @@ RunResult run_into(const RunJob& job, const std::filesystem::path& folder, Conso
     if (result.damage) throw DataError(*result.damage);
     throw DataError(fmt::format("'{}': no epoch came out of the data", job.log));
   }
-  result.calibration =
-      evaluation::calibrated_blocks(output.last_epoch(), settings.calibrate.layout());
+  result.calibration = calibration(output.last_epoch(), settings, source);
   result.resources = meter.used();
   if (report) write_report(result, *report, folder, console);
   if (profile) result.profile = profile->times();

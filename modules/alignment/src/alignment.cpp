@@ -213,7 +213,7 @@ void Aligner::Impl::add(const GnssFix& fix) {
   if (elsewhere) forget_all();
   if (all_given()) {
     if (const auto start = given_start_.add(fix, mounting_, given_, noise_))
-      accept(*start, "as given");
+      accept(with_antenna_blocks(*start, layout_), "as given");
     return;
   }
   rest_.add(fix);
@@ -340,8 +340,9 @@ void Aligner::Impl::begin(AlignmentFindings findings, bool at_rest) {
     const Vector3d variance = findings.gyro_covariance.diagonal().array() + prior_variance;
     log_prior.push_back(-0.5 *
                         (findings.gyro_b - rate_b).cwiseAbs2().cwiseQuotient(variance).sum());
-    starts.push_back(with_given_angles(initial_state(findings, noise_, layout_), mounting_.q_v_b,
-                                       {given_.roll, given_.pitch, {}}));
+    const state::Epoch start =
+        with_antenna_blocks(initial_state(findings, noise_, layout_), layout_);
+    starts.push_back(with_given_angles(start, mounting_.q_v_b, {given_.roll, given_.pitch, {}}));
   }
   const double most = *std::max_element(log_prior.begin(), log_prior.end());
   constexpr double kContradiction = -12.5;  // the prior is wrong then, see fuse_gyro_prior()
@@ -500,7 +501,7 @@ std::optional<state::Epoch> Aligner::Impl::start_from(const state::Epoch& found,
   }
   constexpr double kStillLinear = 1;  // [rad]
   if (!(epoch.sigma_of(state::block::attitude).maxCoeff() < kStillLinear)) return std::nullopt;
-  return with_given_angles(epoch, mounting_.q_v_b, given_);
+  return with_given_angles(with_antenna_blocks(epoch, layout_), mounting_.q_v_b, given_);
 }
 
 std::vector<Refined> Aligner::Impl::refined_candidates(double level) const {

@@ -220,6 +220,20 @@ state::Epoch with_given_angles(const state::Epoch& epoch, const Quaterniond& q_v
   return result;
 }
 
+state::Epoch with_antenna_blocks(const state::Epoch& epoch, const state::Layout& layout) {
+  const state::SlowBlock* arm = layout.find(state::block::lever_arm);
+  const state::SlowBlock* offset = layout.find(state::block::time_offset);
+  if (!arm && !offset) return epoch;
+  state::Epoch out = state::with_slow_blocks(epoch, layout);
+  state::StateMatrix J = state::StateMatrix::Identity(layout.size(), layout.size());
+  if (arm) {
+    state::columns_of(state::rows_of(J, position), *arm) = -epoch.q_n_b.toRotationMatrix();
+  }
+  if (offset) state::columns_of(state::rows_of(J, position), *offset) = epoch.velocity_n;
+  out.covariance = J * out.covariance * J.transpose();
+  return out;
+}
+
 state::Epoch given_state(const GnssFix& fix, const Vector3d& antenna_velocity_n,
                          const Matrix3d& velocity_covariance, const Vector3d& omega_b,
                          const Quaterniond& q_v_b, const GivenAngles& given,

@@ -75,4 +75,10 @@ state::Epoch given_state(const GnssFix& fix, const Eigen::Vector3d& antenna_velo
                          const Eigen::Quaterniond& q_v_b, const GivenAngles& given,
                          const imu::ImuNoise& noise);
 
+/// An epoch whose position was made of a fix shares what is not known of the antenna and of its
+/// clock: position = fix - C l + v s, so that d(position) has -C dl + v ds beside the error of the
+/// fix. Without this the height of the first fix would tell the vertical lever arm. What the offset
+/// does to a velocity, acceleration times ds, is left out.
+state::Epoch with_antenna_blocks(const state::Epoch& epoch, const state::Layout& layout);
+
 }  // namespace foucault::alignment

@@ -52,7 +52,7 @@ class StraightNavigator : public measurement::Navigator {
   static constexpr double kWalk = 0.003;  // [m/s/sqrt(s)]
 
   state::Linearized linearize(const measurement::Observation& observation) const {
-    return observation.linearize(epoch_, Eigen::Vector3d::Zero(), state::Layout());
+    return observation.linearize(epoch_, {}, state::Layout());
   }
 
   state::Epoch epoch_;

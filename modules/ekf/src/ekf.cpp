@@ -63,7 +63,7 @@ state::StateMatrix EkfNavigator::covariance() const {
 state::Epoch EkfNavigator::epoch() const { return {state_, covariance()}; }
 
 state::Linearized EkfNavigator::linearize(const measurement::Observation& observation) const {
-  return observation.linearize(state_, rates_.gyro_b, noise_.layout);
+  return observation.linearize(state_, {rates_.gyro_b, rates_.accel_b}, noise_.layout);
 }
 
 state::Innovation EkfNavigator::innovation(const measurement::Observation& observation) const {

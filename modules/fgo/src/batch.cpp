@@ -66,7 +66,7 @@ void BatchRecorder::update(const measurement::ObservationPtr& observation) {
   forward_->update(observation);
   const state::Epoch now = forward_->epoch();
   BatchNode& node = chains_.back().nodes.back();
-  node.observations.push_back({observation, rates_.gyro_b});
+  node.observations.push_back({observation, {rates_.gyro_b, rates_.accel_b}});
   node.x = to_node(now, context_);
   passages_.back().filtered = without_slow(now);
   begin_interval(now);

@@ -11,7 +11,7 @@ namespace foucault::fgo {
 ObservationRows linearize(const NodeObservation& z, const state::NodeState& x,
                           const state::SlowVector& slow, const GraphContext& context) {
   const LocalNode node = to_nav(x, slow, context);
-  const state::Linearized in_n = z.observation->linearize(node.x, z.rate_b, context.layout);
+  const state::Linearized in_n = z.observation->linearize(node.x, z.mean, context.layout);
   const auto llt = in_n.R.llt();
   if (llt.info() != Eigen::Success)
     throw std::invalid_argument("covariance of " + std::string(z.observation->name()) +

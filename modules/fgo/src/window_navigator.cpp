@@ -106,8 +106,9 @@ WindowNavigator::Prediction WindowNavigator::prediction() const {
 state::Innovation WindowNavigator::innovation(const measurement::Observation& observation) const {
   const Prediction predicted = prediction();
   const LocalNode local = to_nav(predicted.x, slow_, context_);
-  return state::innovation_of(observation.linearize(local.x, rates_.gyro_b, context_.layout),
-                              turned(predicted.covariance, local.R_n_w));
+  return state::innovation_of(
+      observation.linearize(local.x, {rates_.gyro_b, rates_.accel_b}, context_.layout),
+      turned(predicted.covariance, local.R_n_w));
 }
 
 state::Epoch WindowNavigator::epoch() const {
@@ -121,8 +122,8 @@ void WindowNavigator::update(const measurement::ObservationPtr& observation) {
     add_node(predict(nodes_.back().x, pre, earth_, context_.layout.imu_scale(slow_)), pre);
   }
   Node& node = nodes_.back();
-  node.observations.emplace_back(NodeObservation{observation, rates_.gyro_b}, node.x, slow_,
-                                 context_);
+  node.observations.emplace_back(NodeObservation{observation, {rates_.gyro_b, rates_.accel_b}},
+                                 node.x, slow_, context_);
   solve();
   marginalize_old();
   begin_interval();  // at the bias just estimated

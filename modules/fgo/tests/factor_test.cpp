@@ -169,7 +169,7 @@ TEST_P(FactorAtRotation, ObservationJacobians) {
   const Vector3d rate_b(0.3, -0.2, 0.7);
   for (const measurement::ObservationPtr& z : {measurement::gnss_position(fix_near_origin()),
                                                measurement::gnss_velocity(fix_near_origin())}) {
-    const ObservationFactor factor({z, rate_b}, x, state::SlowVector(0), context);
+    const ObservationFactor factor({z, {rate_b, {}}}, x, state::SlowVector(0), context);
     probe(factor, blocks_of({x}), 1e-3, 1e-5);
   }
 }
@@ -179,7 +179,7 @@ class ScaledSpeed final : public measurement::Observation {
  public:
   static constexpr state::Block kScale{"speed_scale", 1, "1"};
   std::string_view name() const override { return "scaled_speed"; }
-  state::Linearized linearize(const state::NavState& x, const Vector3d&,
+  state::Linearized linearize(const state::NavState& x, const measurement::MeanMotion&,
                               const state::Layout& layout) const override {
     const Eigen::Index column = state::kNodeSize + *layout.slow_index(kScale);
     const double speed = x.velocity_n.norm();
@@ -197,7 +197,7 @@ class ScaledSpeed final : public measurement::Observation {
 TEST_P(FactorAtRotation, ObservationJacobiansWithABorder) {
   const GraphContext context = wuhan(state::Layout().add(ScaledSpeed::kScale, 0.1));
   const state::NodeState x = random_state(rng_, GetParam());
-  const ObservationFactor factor({std::make_shared<ScaledSpeed>(), Vector3d::Zero()}, x,
+  const ObservationFactor factor({std::make_shared<ScaledSpeed>(), {}}, x,
                                  state::SlowVector::Constant(1, 0.2), context);
   probe(factor, blocks_of({x}, {0.2}), 1e-3, 1e-5);
 }

@@ -18,7 +18,7 @@ class BeaconRange final : public measurement::Observation {
 
   std::string_view name() const override { return "beacon"; }
 
-  state::Linearized linearize(const state::NavState& x, const Vector3d& /*rate_b*/,
+  state::Linearized linearize(const state::NavState& x, const measurement::MeanMotion& /*mean*/,
                               const state::Layout& layout) const override {
     const Vector3d way = geodesy::displacement_n(x.position, beacon_, geodesy::Place(x.position));
     const int temperature = *layout.slow_index(kTemperature);

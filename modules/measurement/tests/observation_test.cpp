@@ -55,7 +55,7 @@ class BeaconRange final : public Observation {
 
   std::string_view name() const override { return "beacon_range"; }
 
-  state::Linearized linearize(const state::NavState& x, const Eigen::Vector3d& /*rate_b*/,
+  state::Linearized linearize(const state::NavState& x, const MeanMotion& /*mean*/,
                               const state::Layout& layout) const override {
     const Eigen::Matrix3d R_e_n = geodesy::wgs84::R_e_n(x.position.latitude, x.position.longitude);
     const Eigen::Matrix3d C = x.q_n_b.toRotationMatrix();
@@ -114,7 +114,9 @@ const std::vector<Kind> kKinds = {
 state::Layout every_block() {
   state::Layout layout;
   layout.add(state::block::accel_scale, 1e-3)
+      .add(state::block::time_offset, 0.3)
       .add(kTemperature, 5)
+      .add(state::block::lever_arm, 1)
       .add(state::block::gyro_scale, 1e-3);
   return layout;
 }
@@ -134,14 +136,14 @@ state::NavState random_state(std::mt19937& rng, const state::Layout& layout) {
 /// An observation at a state, and the rate there.
 struct Sample {
   state::NavState x;
-  Eigen::Vector3d rate_b;
+  MeanMotion mean;
   ObservationPtr observation;
 };
 
 Sample random_sample(const Kind& kind, const state::Layout& layout, std::mt19937& rng) {
   Sample s;
   s.x = random_state(rng, layout);
-  s.rate_b = kMostRate * draw3(rng);
+  s.mean = {kMostRate * draw3(rng), 20 * draw3(rng)};
   s.observation = kind.make(s.x, rng);
   return s;
 }
@@ -153,7 +155,7 @@ state::StateVector gradient_by_differences(const Sample& s, const state::Layout&
     const double h = i < state::block::position.size ? 0.1 : 1e-4;
     const state::StateVector step = h * state::StateVector::Unit(layout.size(), i);
     const auto r = [&](const state::StateVector& error) {
-      return s.observation->linearize(state::boxplus(s.x, error), s.rate_b, layout).r[row];
+      return s.observation->linearize(state::boxplus(s.x, error), s.mean, layout).r[row];
     };
     gradient[i] = (r(-step) - r(step)) / (2 * h);
   }
@@ -177,7 +179,7 @@ state::StateVector tolerance(const Sample& s, const state::Layout& layout) {
 
 /// Largest error of H by its tolerance.
 double worst_of(const Sample& s, const state::Layout& layout) {
-  const state::Linearized z = s.observation->linearize(s.x, s.rate_b, layout);
+  const state::Linearized z = s.observation->linearize(s.x, s.mean, layout);
   if (z.H.cols() != layout.size() || z.H.rows() != z.r.size()) return INFINITY;
   double worst = 0;
   for (int row = 0; row < z.r.size(); ++row) {
@@ -201,13 +203,15 @@ TEST_P(Observations, JacobianIsThatOfDifferences) {
 /// Blocks elsewhere, or not at all.
 TEST_P(Observations, JacobianFollowsTheLayout) {
   std::mt19937 rng{43};
-  std::vector<state::Layout> layouts(4);
+  std::vector<state::Layout> layouts(6);
   layouts[1].add(state::block::gyro_scale, 1).add(kTemperature, 1);
   layouts[2].add(kTemperature, 1);
   layouts[3]
       .add(state::Block{"unknown", 4, "1"}, 1)
       .add(state::block::gyro_scale, 1)
       .add(state::block::accel_scale, 1);
+  layouts[4].add(state::block::time_offset, 1);
+  layouts[5].add(state::block::lever_arm, 1).add(state::block::accel_scale, 1);
   for (const state::Layout& layout : layouts) {
     for (int i = 0; i < 20; ++i)
       EXPECT_LE(worst_of(random_sample(GetParam(), layout, rng), layout), 1) << layout.size();
@@ -220,9 +224,9 @@ TEST_P(Observations, SlowBlocksThatAreZeroChangeNothing) {
   const state::Layout none;
   for (int i = 0; i < 20; ++i) {
     Sample s = random_sample(GetParam(), none, rng);
-    const state::Linearized alone = s.observation->linearize(s.x, s.rate_b, none);
+    const state::Linearized alone = s.observation->linearize(s.x, s.mean, none);
     s.x.slow = state::SlowVector::Zero(every_block().slow_size());
-    const state::Linearized with = s.observation->linearize(s.x, s.rate_b, every_block());
+    const state::Linearized with = s.observation->linearize(s.x, s.mean, every_block());
     EXPECT_EQ(alone.r, with.r);
     EXPECT_EQ(alone.H, with.H.leftCols(none.size()));
     EXPECT_EQ(alone.R, with.R);
@@ -232,7 +236,7 @@ TEST_P(Observations, SlowBlocksThatAreZeroChangeNothing) {
 TEST_P(Observations, NoiseIsACovarianceOfEachRow) {
   std::mt19937 rng{45};
   const Sample s = random_sample(GetParam(), every_block(), rng);
-  const state::Linearized z = s.observation->linearize(s.x, s.rate_b, every_block());
+  const state::Linearized z = s.observation->linearize(s.x, s.mean, every_block());
   EXPECT_LE(z.r.size(), state::kMostMeasured);
   ASSERT_EQ(z.R.rows(), z.r.size());
   ASSERT_EQ(z.R.cols(), z.r.size());
@@ -267,9 +271,9 @@ class Spoilt final : public Observation {
   Spoilt(ObservationPtr sound, int column, double factor)
       : sound_(std::move(sound)), column_(column), factor_(factor) {}
   std::string_view name() const override { return "spoilt"; }
-  state::Linearized linearize(const state::NavState& x, const Eigen::Vector3d& rate_b,
+  state::Linearized linearize(const state::NavState& x, const MeanMotion& mean,
                               const state::Layout& layout) const override {
-    state::Linearized z = sound_->linearize(x, rate_b, layout);
+    state::Linearized z = sound_->linearize(x, mean, layout);
     z.H.col(column_) *= factor_;
     return z;
   }
@@ -284,7 +288,7 @@ TEST_P(Observations, WrongColumnsAreSeen) {
   std::mt19937 rng{47};
   const state::Layout layout = every_block();
   const Sample sound = random_sample(GetParam(), layout, rng);
-  const state::Linearized z = sound.observation->linearize(sound.x, sound.rate_b, layout);
+  const state::Linearized z = sound.observation->linearize(sound.x, sound.mean, layout);
   int spoilt = 0;
   for (int column = 0; column < layout.size(); ++column) {
     if (z.H.col(column).cwiseAbs().maxCoeff() < 0.05) continue;
@@ -338,7 +342,7 @@ class Antenna {
 /// The state and the rate that sensors of these errors would show.
 struct AtAntenna {
   state::NavState x;
-  Eigen::Vector3d rate_b;
+  MeanMotion mean;
 };
 
 AtAntenna at(const simulation::Motion& m, const state::Layout& layout) {
@@ -348,8 +352,13 @@ AtAntenna at(const simulation::Motion& m, const state::Layout& layout) {
   a.x.q_n_b = m.q_n_v;
   a.x.bias.gyro = Eigen::Vector3d(0.02, -0.01, 0.03);
   a.x.slow = state::SlowVector::LinSpaced(layout.slow_size(), -0.03, 0.04);
+  for (const state::Block& of_antenna : {state::block::lever_arm, state::block::time_offset}) {
+    if (const state::SlowBlock* slow = layout.find(of_antenna)) {
+      a.x.slow.segment(slow->index, slow->block.size).setZero();
+    }
+  }
   const Eigen::Array3d scale = 1 + layout.imu_scale(a.x.slow).gyro.array();
-  a.rate_b = (scale * m.omega_iv_v.array()).matrix() + a.x.bias.gyro;
+  a.mean.rate_b = (scale * m.omega_iv_v.array()).matrix() + a.x.bias.gyro;
   return a;
 }
 
@@ -368,7 +377,7 @@ Residuals along_the_way(const Antenna& antenna, const Eigen::Vector3d& lever_arm
     fix.antenna = geodesy::wgs84::ecef_to_geodetic(antenna.p_e(t));
     fix.velocity_n = antenna.velocity_n(t);
     const auto residual = [&](const Observation& o) {
-      return o.linearize(a.x, a.rate_b, layout).r.cwiseAbs().maxCoeff();
+      return o.linearize(a.x, a.mean, layout).r.cwiseAbs().maxCoeff();
     };
     most.position = std::max(most.position, residual(GnssPosition(fix)));
     most.velocity = std::max(most.velocity, residual(GnssVelocity(fix)));
@@ -405,7 +414,7 @@ TEST(GnssVelocity, SeesTheScaleOfTheGyroscopes) {
     fix.p_b_a = antenna.p_b_a;
     fix.velocity_n = antenna.velocity_n(t);
     a.x.slow.setZero();
-    most = std::max(most, GnssVelocity(fix).linearize(a.x, a.rate_b, layout).r.norm());
+    most = std::max(most, GnssVelocity(fix).linearize(a.x, a.mean, layout).r.norm());
   }
   EXPECT_GT(most, 5e-3);
 }

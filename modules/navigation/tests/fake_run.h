@@ -90,7 +90,7 @@ class FakeNavigator : public Navigator {
 
  private:
   state::Linearized linearize(const Observation& observation) const {
-    return observation.linearize(epoch(), Vector3d::Zero(), state::Layout{});
+    return observation.linearize(epoch(), {}, state::Layout{});
   }
 
   Log& log_;

@@ -502,8 +502,10 @@ TEST_F(NavigationRunTest, FixesThatNoVehicleReachesAreLeftOut) {
 TEST_F(NavigationRunTest, AWrongFirstFixCostsOneGoodOne) {
   run().process(fix_at(-10, Vector3d(5e5, 0, 0)));
   feed_imu(-20, 10);
-  for (int i = 1; i < 11; ++i) run().process(fix_at(10 * i));
-  feed_imu(10, 110);
+  for (int i = 1; i < 11; ++i) {
+    run().process(fix_at(10 * i));
+    feed_imu(10 * i, 10 * i + 10);
+  }
   run().finish();
   EXPECT_THAT(sink_.notices.back().text, HasSubstr("1 fixes lie where no vehicle gets to"));
 }

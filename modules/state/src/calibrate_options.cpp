@@ -6,6 +6,17 @@ void CalibrateOptions::fields(ConfigFields& f) {
   f.text("mode", mode, {"auto", "none"}, "auto: what is on below; none: nothing beside the biases");
   f.text("gyro_scale", gyro_scale, {"on", "off"}, "scale factors of the gyroscopes");
   f.text("accel_scale", accel_scale, {"on", "off"}, "scale factors of the accelerometers");
+  f.text("lever_arm", lever_arm, {"on", "off"}, "IMU to antenna, what it was given wrong by");
+  f.text("time_offset", time_offset, {"on", "off"},
+         "how late fixes are stamped, on the clock of the IMU; the log is gone through twice");
+  f.optional_number(
+      "lever_arm_sigma_m", lever_arm_sigma_m, kPositive,
+      "what is known of the lever arm before, 1 sigma an axis; not set: 0.05 where it "
+      "was given in the import, else 1");
+  f.number("time_offset_sigma_s", time_offset_sigma_s, {1e-6, 1},
+           "what is known of the time offset before, 1 sigma");
+  f.number("time_offset_s", time_offset_s, {-1, 1},
+           "known time offset: fixes are taken as of so much before their stamps [s]");
   f.number("gyro_scale_sigma_ppm", gyro_scale_sigma_ppm, kPositive,
            "what is known of the gyroscopes' before, 1 sigma");
   f.number("accel_scale_sigma_ppm", accel_scale_sigma_ppm, kPositive,
@@ -17,7 +28,10 @@ void CalibrateOptions::fields(ConfigFields& f) {
 Layout CalibrateOptions::layout() const {
   constexpr double kPpm = 1e-6;
   Layout layout;
+  constexpr double kUnknownLeverArm = 1;
   if (mode == "none") return layout;
+  if (time_offset == "on") layout.add(block::time_offset, time_offset_sigma_s);
+  if (lever_arm == "on") layout.add(block::lever_arm, lever_arm_sigma_m.value_or(kUnknownLeverArm));
   if (gyro_scale == "on") layout.add(block::gyro_scale, kPpm * gyro_scale_sigma_ppm, scale_tau_s);
   if (accel_scale == "on")
     layout.add(block::accel_scale, kPpm * accel_scale_sigma_ppm, scale_tau_s);

@@ -20,6 +20,7 @@ class RawlogOptions : public Configurable {
   std::string gnss_label;                     ///< of the receiver; empty: the first with a position
   std::string reference_label = "REFERENCE";  ///< of the reference trajectory
   double reorder_s = 2.0;                     ///< records may come this late [s]
+  double fix_delay_s = 0;  ///< fixes are of so much before their stamps [s]; no key of its own
 
   void fields(ConfigFields& f) override;
 };

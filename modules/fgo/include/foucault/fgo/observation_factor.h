@@ -11,7 +11,7 @@ namespace foucault::fgo {
 /// An observation at a node.
 struct NodeObservation {
   measurement::ObservationPtr observation;
-  Eigen::Vector3d rate_b = Eigen::Vector3d::Zero();  ///< mean rate about its stamp, as measured
+  measurement::MeanMotion mean;  ///< about its stamp
 };
 
 /// Whitened rows, predicted minus measured, in the local NED of the place; columns by w.

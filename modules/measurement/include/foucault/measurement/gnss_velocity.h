@@ -6,15 +6,15 @@
 namespace foucault::measurement {
 
 /// Velocity of the antenna, v + C (omega x l), omega = (rate_b - bias) / (1 + scale) by axis.
-/// d(v_a) = dv - C [(omega x l) x] d + C [l x] (dbg + omega dscale) / (1 + scale). The rotation of
-/// n and of the Earth, 0.1 mm/s at a metre of lever arm, is left out.
+/// d(v_a) = dv - C [(omega x l) x] d + C [l x] (dbg + omega dscale) / (1 + scale)
+/// + C [omega x] dl; where the time offset s is estimated, v_a - s a_a.
 class GnssVelocity final : public Observation {
  public:
   /// Precondition: the fix has a velocity.
   explicit GnssVelocity(const GnssFix& fix);
 
   std::string_view name() const override { return "gnss_velocity"; }
-  state::Linearized linearize(const state::NavState& x, const Eigen::Vector3d& rate_b,
+  state::Linearized linearize(const state::NavState& x, const MeanMotion& mean,
                               const state::Layout& layout) const override;
 
  private:

@@ -9,6 +9,12 @@
 
 namespace foucault::measurement {
 
+/// What the IMU measured about a stamp: means, not compensated; zero if unknown.
+struct MeanMotion {
+  Eigen::Vector3d rate_b = Eigen::Vector3d::Zero();   ///< [rad/s]
+  Eigen::Vector3d force_b = Eigen::Vector3d::Zero();  ///< [m/s^2]
+};
+
 /// Something that was measured at one stamp, as a function of the state there. One class each; the
 /// filter, the smoothers and the graphs use it unchanged.
 class Observation {
@@ -19,9 +25,8 @@ class Observation {
   virtual std::string_view name() const = 0;
 
   /// In the local NED of x: r = measured - predicted, H = d predicted / d error, by the blocks of
-  /// `layout`, and the covariance R of what was measured. `rate_b`: mean angular rate about the
-  /// stamp as the gyroscopes measured it [rad/s], zero if unknown.
-  virtual state::Linearized linearize(const state::NavState& x, const Eigen::Vector3d& rate_b,
+  /// `layout`, and the covariance R of what was measured. `mean`: about the stamp.
+  virtual state::Linearized linearize(const state::NavState& x, const MeanMotion& mean,
                                       const state::Layout& layout) const = 0;
 };
 

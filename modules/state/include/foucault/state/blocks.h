@@ -41,6 +41,11 @@ inline constexpr NodeBlock accel_bias{{"accel_bias", 3, "m/s^2"}, 12};
 /// measured = (1 + scale) * true + bias, an axis of b each.
 inline constexpr Block gyro_scale{"gyro_scale", 3, "1"};
 inline constexpr Block accel_scale{"accel_scale", 3, "1"};
+
+/// IMU to antenna, what has to be added to the one that fixes come with; in b.
+inline constexpr Block lever_arm{"lever_arm", 3, "m"};
+/// Fixes are of so much before their stamps, on the clock of the IMU.
+inline constexpr Block time_offset{"time_offset", 1, "s"};
 }  // namespace block
 
 using NodeVector = Eigen::Matrix<double, kNodeSize, 1>;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "foucault/core/config.h"
@@ -13,6 +14,12 @@ class CalibrateOptions : public Configurable {
   std::string mode = "auto";        ///< auto: as below | none: nothing beside the biases
   std::string gyro_scale = "off";   ///< on | off
   std::string accel_scale = "off";  ///< on | off
+  std::string lever_arm = "off";    ///< on | off
+  std::string time_offset = "off";  ///< on | off
+  /// Not set: 5 cm where the lever arm was given in the import, else 1 m.
+  std::optional<double> lever_arm_sigma_m;
+  double time_offset_sigma_s = 0.3;
+  double time_offset_s = 0;  ///< known of it: fixes are of so much before their stamps
   double gyro_scale_sigma_ppm = 1000;
   double accel_scale_sigma_ppm = 1000;
   /// By default a constant, as in a graph. What wanders leaves the vertical free: with ten days it
