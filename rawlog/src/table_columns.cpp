@@ -152,6 +152,12 @@ Header header_at(size_t number, TextTable& table, const std::vector<Separator>& 
   return best;
 }
 
+bool begins_with_number(const Header& header) {
+  if (header.names.empty()) return false;
+  const char first = header.names.front().c_str()[0];  // zero if it is empty
+  return std::isdigit(static_cast<unsigned char>(first)) != 0 || first == '-' || first == '.';
+}
+
 /// The first line with all the columns, else the one that has most of their names.
 Header find_header(const TableMapping& mapping, TextTable& table) {
   const Names wanted = names_of(mapping);
@@ -162,7 +168,8 @@ Header find_header(const TableMapping& mapping, TextTable& table) {
     if (table.preview(number).size() < number) break;
     if (is_empty(table.preview(number)[number - 1])) continue;
     Header header = header_at(number, table, separators, wanted);
-    if (header.found == wanted.size() && header.names.size() >= fewest) return header;
+    const bool row = wanted.empty() && begins_with_number(header);
+    if (!row && header.found == wanted.size() && header.names.size() >= fewest) return header;
     if (header.beats(best)) best = std::move(header);
   }
   if (best.line == 0) throw DataError(fmt::format("'{}' has no header line", table.path()));
