@@ -260,7 +260,9 @@ int64_t TimeColumn::day_number(const Row& row) const {
   return days * kNanosecondsPerDay + parts % kPartsPerDay * 864 / 10;  // 86.4 ns each
 }
 
+/// Zero is a clock that is not set yet.
 void TimeColumn::check_range(const Row& row, int64_t time_ns) const {
+  if (time_ns == 0) return;
   const TimeRange range = range_of(system_);
   const bool late = system_ == "seconds_of_day" && first_ && time_ns > kNanosecondsPerDay;
   if (!late && time_ns >= range.first_ns && time_ns <= range.last_ns) return;
