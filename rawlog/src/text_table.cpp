@@ -93,7 +93,8 @@ std::string advice(std::string_view field) {
   if (decimal_sign(field, ',')) {
     return "if that is a decimal comma, give decimal: comma in the mapping, else ";
   }
-  const bool is_hex = field.find_first_not_of("0123456789abcdefABCDEFxX") == std::string_view::npos;
+  const bool is_hex = !field.empty() &&
+                      field.find_first_not_of("0123456789abcdefABCDEFxX") == std::string_view::npos;
   return is_hex ? "if it is hexadecimal, turn the column into decimal numbers, else " : "";
 }
 
