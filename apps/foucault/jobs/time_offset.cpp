@@ -38,9 +38,10 @@ std::optional<Rest> rest_of_offset(const std::string& log, const Settings& setti
   }
   console.clear_progress();
   if (!sink.last) return std::nullopt;
-  const int index = settings.calibrate.layout().slow_index(state::block::time_offset).value();
-  const auto row = state::state_size(index);
-  return Rest{sink.last->slow[index], std::sqrt(sink.last->covariance(row, row))};
+  const state::Layout layout = settings.calibrate.layout();
+  const state::SlowBlock& offset = *layout.find(state::block::time_offset);
+  return Rest{sink.last->slow[offset.index],
+              std::sqrt(state::part(sink.last->covariance, offset, offset)(0, 0))};
 }
 
 }  // namespace
