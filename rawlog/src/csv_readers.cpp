@@ -23,6 +23,7 @@
 #include "position_units.h"
 #include "shared_stamps.h"
 #include "table_units.h"
+#include "time_column.h"
 #include "unit_search.h"
 
 namespace foucault::rawlog {
@@ -32,7 +33,7 @@ namespace fs = std::filesystem;
 namespace {
 
 Roles joined(std::initializer_list<Roles> parts) {
-  Roles all{"time", "date", "week"};
+  Roles all = time_roles();
   for (const Roles& part : parts) all.insert(all.end(), part.begin(), part.end());
   return all;
 }
@@ -54,7 +55,33 @@ void check_lines(const std::map<std::string, std::string>& texts, const std::str
 void check_lines(const TableMapping& mapping, const std::string& section) {
   check_lines(mapping.columns, section + ".columns");
   check_line(mapping.time.date, section + ".time.date");
+  check_line(mapping.time.date_format, section + ".time.date_format");
+  check_line(mapping.rows.column, section + ".rows.column");
+  check_line(mapping.rows.value, section + ".rows.value");
   check_line(mapping.file, section + ".file");
+}
+
+using Notices = std::vector<std::string>;
+
+void append(Notices& notices, const Notices& more) {
+  notices.insert(notices.end(), more.begin(), more.end());
+}
+
+/// What was assumed of a table.
+Notices joined(Notices notices, const Columns& columns, const TextTable& table) {
+  append(notices, columns.notices());
+  append(notices, table.notices());
+  return notices;
+}
+
+/// Turns seconds of a day that are hhmmss into those.
+Notices find_clock(TableMapping& mapping, const std::string& path, const std::string& section) {
+  if (!has_hhmmss(mapping, path, section)) return {};
+  mapping.time.unit = "hhmmss";
+  return {
+      fmt::format("{}: its times jump at the end of each minute and are read as hhmmss; give "
+                  "{}.time.unit: hhmmss",
+                  path, section)};
 }
 
 // IMU -------------------------------------------------------------------------------------------
@@ -109,8 +136,8 @@ class ImuReader : public RecordReader {
 
   const TextTable& table() const override { return table_; }
   int64_t without_fix() const override { return blank_ + halves_.alone(); }
-  std::vector<std::string> notices() const override {
-    std::vector<std::string> all = notices_;
+  Notices notices() const override {
+    Notices all = joined(notices_, columns_, table_);
     if (halves_seen_) {
       all.push_back(fmt::format(
           "{}: gyroscope and accelerometer have rows of their own: joined at the stamps "
@@ -254,7 +281,7 @@ class ImuReader : public RecordReader {
     ready_.push_back(std::move(record));
   }
 
-  std::vector<std::string> notices_;
+  Notices notices_;
   TextTable table_;
   Columns columns_;
   TimeColumn time_;
@@ -355,6 +382,7 @@ void find_units(ImuTable& found, const FirstRows& first, const std::string& path
 /// With what the mapping leaves to the data.
 ImuTable look_at(const ImuMapping& mapping, const std::string& path) {
   ImuTable found{mapping, {}, {}};
+  found.notices = find_clock(found.mapping, path, "imu");
   find_counts(found, path);
   const FirstRows first = first_rows(found.mapping, path);
   find_units(found, first, path);
@@ -569,7 +597,7 @@ class GnssReader : public RecordReader {
 
   const TextTable& table() const override { return table_; }
   int64_t without_fix() const override { return without_fix_; }
-  std::vector<std::string> notices() const override { return notices_; }
+  Notices notices() const override { return joined(notices_, columns_, table_); }
 
   std::optional<Record> next() override {
     while (const Row* row = table_.next()) {
@@ -646,7 +674,7 @@ class ReferenceReader : public RecordReader {
 
   const TextTable& table() const override { return table_; }
   int64_t without_fix() const override { return blank_; }
-  std::vector<std::string> notices() const override { return notices_; }
+  Notices notices() const override { return joined(notices_, columns_, table_); }
 
   std::optional<Record> next() override {
     while (const Row* row = table_.next()) {
@@ -737,16 +765,16 @@ std::unique_ptr<RecordReader> make_imu_reader(const ImuMapping& mapping, const s
 std::unique_ptr<RecordReader> make_gnss_reader(const GnssMapping& mapping,
                                                const std::string& path) {
   GnssMapping found = mapping;
-  const std::vector<std::string> notices =
-      find_units(found, &found.bearing_unit, "gnss", gnss_roles(), path);
+  Notices notices = find_clock(found, path, "gnss");
+  append(notices, find_units(found, &found.bearing_unit, "gnss", gnss_roles(), path));
   return std::make_unique<GnssReader>(found, path, notices);
 }
 
 std::unique_ptr<RecordReader> make_reference_reader(const ReferenceMapping& mapping,
                                                     const std::string& path) {
   ReferenceMapping found = mapping;
-  const std::vector<std::string> notices =
-      find_units(found, nullptr, "reference", reference_roles(), path);
+  Notices notices = find_clock(found, path, "reference");
+  append(notices, find_units(found, nullptr, "reference", reference_roles(), path));
   return std::make_unique<ReferenceReader>(found, path, notices);
 }
 

@@ -69,25 +69,40 @@ std::vector<std::string> or_auto(const Units& units) {
 
 void TimeMapping::fields(ConfigFields& f) {
   f.text("system", system,
-         {"gps_week_sow", "gps_sow", "gps", "unix", "iso8601", "seconds_of_day", "boot"},
-         "clock of the time column; iso8601: date and time in UTC or with their zone, in `time` or "
-         "in `date` and `time`");
-  f.text("unit", unit, {"s", "ms", "us", "ns"}, "unit of the time column");
+         {"gps_week_sow", "gps_sow", "gps", "unix", "iso8601", "seconds_of_day", "boot", "excel",
+          "matlab_datenum"},
+         "clock of the time column; iso8601: date and time in UTC or with their zone, in `time`, "
+         "in `date` and `time`, or in year, month, day, hour, minute, second; excel and "
+         "matlab_datenum: days, UTC");
+  f.text("unit", unit, {"s", "ms", "us", "ns", "hhmmss"},
+         "unit of the time column; hhmmss: of seconds_of_day written so, without colons");
   f.optional_number("gps_week", gps_week, {0, 10000}, "GPS week, for gps_sow and boot");
   f.text("date", date, {}, "YYYY-MM-DD, UTC, for seconds_of_day");
+  f.text("date_format", date_format, {},
+         "strptime's format of dates in columns, such as \"%d/%m/%Y\" or \"%d%m%y\"; empty: those "
+         "that can be read in one way only");
+  f.optional_number("add_weeks", add_weeks, {0, 10000},
+                    "to the weeks of a column modulo 1024: 2048 since 2019-04-07, 1024 before");
   f.optional_number("boot_sow", boot_sow, kSeconds,
                     "second of the GPS week at which the boot clock was zero [s]");
   f.number("offset_s", offset_s, kSeconds, "true time = stamp + offset_s [s]");
 }
 
+void RowsMapping::fields(ConfigFields& f) {
+  f.text("column", column, {}, "name in the header, or number from 1");
+  f.text("value", value, {}, "what it has in the rows that count, such as $IMU; empty: all rows");
+}
+
 void TableMapping::fields(ConfigFields& f) {
   f.text("file", file, {}, "relative to the folder of this mapping, or to --data");
   f.text("separator", separator, {"auto", "comma", "semicolon", "tab", "space"},
-         "between columns; auto: by the header");
+         "between columns; auto: by header and rows");
   f.text("decimal", decimal, {"auto", "point", "comma"},
-         "sign of decimals; auto: a comma where it separates no columns and no number has a point");
+         "sign of decimals, the other one may stand between thousands; auto: a comma where it "
+         "separates no columns and no number has a point");
   f.flag("header", header, "a line before the first row names the columns");
   f.text_map("columns", columns, "role: name in the header, or number from 1");
+  f.section("rows", rows, "rows of one kind in a table of several");
   f.section("time", time, "clock");
 }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <ctime>
@@ -171,10 +172,23 @@ void check_overlap(const ImportStream& imu, const ImportStream& other, const cha
                   describe_mismatch(seconds_between(imu.first_ns, other.first_ns)), imu.file));
 }
 
+/// Many rows in no time are of a clock in another unit.
+void check_rate(const ImportStream& stream) {
+  constexpr int64_t kFew = 100;
+  constexpr int64_t kShortestStepNs = 1000;
+  const int64_t length_ns = stream.last_ns - stream.first_ns;
+  if (stream.written < kFew || length_ns >= kShortestStepNs * stream.written) return;
+  throw DataError(
+      fmt::format("{} rows of '{}' lie within {:.3g} s; check unit and system of its time",
+                  stream.written, stream.file, seconds_between(stream.first_ns, stream.last_ns)));
+}
+
 void check(const ImportSummary& summary) {
   const bool has_imu = !summary.imu.file.empty();
   if (has_imu) check_not_empty(summary.imu, "IMU");
   check_not_empty(summary.gnss, "GNSS");
+  if (has_imu) check_rate(summary.imu);
+  check_rate(summary.gnss);
   if (has_imu) check_overlap(summary.imu, summary.gnss, "GNSS");
   if (!summary.reference) return;
   check_not_empty(*summary.reference, "reference");

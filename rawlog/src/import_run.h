@@ -47,20 +47,29 @@ class StampOrder {
   int since_jump_ = 0;  ///< rows
 };
 
-/// Times that begin again at the end of their week or day.
+/// Times that begin again at the end of their week or day, or as a counter does.
 class RollingTime {
  public:
   explicit RollingTime(int64_t period_ns, std::optional<int64_t> last_ns = {})
-      : period_ns_(period_ns), last_ns_(last_ns) {}
+      : period_ns_(period_ns), near_ns_(period_ns / 4), last_ns_(last_ns) {}
+  /// One that begins again only within a minute of its end: it may also be switched on again.
+  static RollingTime counter(int64_t period_ns) {
+    RollingTime time(period_ns);
+    time.near_ns_ = 60 * kNanosecondsPerSecond;
+    return time;
+  }
 
   /// As if they went on, from the period of the first or of `last_ns` on.
   int64_t unrolled(int64_t time_ns);
 
  private:
-  bool begins(int64_t time_ns) const { return time_ns < period_ns_ / 4; }
-  bool ends(int64_t time_ns) const { return time_ns > period_ns_ - period_ns_ / 4; }
+  bool begins(int64_t time_ns) const { return time_ns < near_ns_; }
+  bool ends(int64_t time_ns) const {
+    return time_ns > period_ns_ - near_ns_ && time_ns < period_ns_ + near_ns_;
+  }
 
   int64_t period_ns_;
+  int64_t near_ns_;  ///< to the end, or behind the beginning
   std::optional<int64_t> last_ns_;
   int64_t periods_ = 0;
 };

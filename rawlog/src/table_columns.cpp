@@ -6,12 +6,10 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
-#include <cmath>
+#include <deque>
+#include <utility>
 
-#include "calendar_text.h"
-#include "foucault/core/constants.h"
 #include "foucault/core/error.h"
-#include "foucault/core/time.h"
 
 namespace foucault::rawlog {
 
@@ -19,8 +17,10 @@ namespace {
 
 using Separator = TextTable::Separator;
 using Names = std::vector<std::string>;
+using Fields = std::vector<std::string_view>;
 
-constexpr size_t kMostLinesBefore = 100;  ///< the header
+constexpr size_t kMostLinesBefore = 1000;  ///< the header
+constexpr size_t kFirstRows = 100;         ///< that are looked at
 constexpr const char* kCommentSigns = "#%";
 
 std::vector<Separator> separators_of(const TableMapping& mapping) {
@@ -77,14 +77,46 @@ struct Header {
   Separator separator = Separator::comma;
   size_t found = 0;  ///< of the names that are looked for
   bool comment = false;
+  bool fits = false;  ///< the rows below
 
-  /// The one with more of the names, then the one that is no comment, then the one that is cut.
+  /// The one with more of the names, then the one that is no comment, then the one that fits, then
+  /// the one that is cut.
   bool beats(const Header& other) const {
     if (other.line == 0 || found != other.found) return other.line == 0 || found > other.found;
     if (comment != other.comment) return !comment;
-    return line == other.line && names.size() > other.names.size();
+    if (line != other.line) return false;
+    return fits != other.fits ? fits : names.size() > other.names.size();
   }
 };
+
+/// Rows behind so many lines, cut, as views of the preview.
+std::vector<Fields> first_rows(TextTable& table, size_t behind, Separator separator, size_t most) {
+  std::vector<Fields> rows;
+  const std::deque<std::string>& lines = table.preview(behind + 2 * most);
+  for (size_t i = behind; i < lines.size() && rows.size() < most; ++i) {
+    if (!is_empty(lines[i]) && !is_comment(lines[i])) cut(lines[i], separator, rows.emplace_back());
+  }
+  return rows;
+}
+
+/// Without empty cells at the end that stand behind `fewest`.
+size_t width_of(const Fields& fields, size_t fewest) {
+  size_t size = fields.size();
+  while (size > fewest && fields[size - 1].empty()) --size;
+  return size;
+}
+
+/// Whether one of the next two rows, the first may be one of units, has as many columns; a
+/// separator with blanks around it is no name.
+bool fits_rows(const Header& header, TextTable& table) {
+  const auto is_sign = [](const std::string& name) { return name == "," || name == ";"; };
+  if (header.names.size() < 2) return false;
+  if (std::any_of(header.names.begin(), header.names.end(), is_sign)) return false;
+  const std::vector<Fields> rows = first_rows(table, header.line, header.separator, 2);
+  return std::any_of(rows.begin(), rows.end(), [&](const Fields& row) {
+    return width_of(row, header.names.size()) == header.names.size();
+  });
+}
 
 /// The columns that a mapping tells by name.
 Names names_of(const TableMapping& mapping) {
@@ -104,11 +136,13 @@ size_t fewest_columns(const TableMapping& mapping) {
   return fewest;
 }
 
-Header header_at(std::string_view line, size_t number, const std::vector<Separator>& separators,
+Header header_at(size_t number, TextTable& table, const std::vector<Separator>& separators,
                  const Names& wanted) {
+  const std::string line = table.preview(number)[number - 1];
   Header best;
   for (const Separator separator : separators) {
     Header header{names_in(line, separator), number, separator, 0, is_comment(line)};
+    header.fits = fits_rows(header, table);
     header.found = static_cast<size_t>(
         std::count_if(wanted.begin(), wanted.end(), [&](const std::string& name) {
           return std::find(header.names.begin(), header.names.end(), name) != header.names.end();
@@ -118,18 +152,24 @@ Header header_at(std::string_view line, size_t number, const std::vector<Separat
   return best;
 }
 
+bool begins_with_number(const Header& header) {
+  if (header.names.empty()) return false;
+  const char first = header.names.front().c_str()[0];  // zero if it is empty
+  return std::isdigit(static_cast<unsigned char>(first)) != 0 || first == '-' || first == '.';
+}
+
 /// The first line with all the columns, else the one that has most of their names.
 Header find_header(const TableMapping& mapping, TextTable& table) {
   const Names wanted = names_of(mapping);
   const std::vector<Separator> separators = separators_of(mapping);
   const size_t fewest = fewest_columns(mapping);
   Header best;
-  size_t number = 0;
-  for (const std::string& line : table.preview(kMostLinesBefore)) {
-    ++number;
-    if (is_empty(line)) continue;
-    Header header = header_at(line, number, separators, wanted);
-    if (header.found == wanted.size() && header.names.size() >= fewest) return header;
+  for (size_t number = 1; number <= kMostLinesBefore; ++number) {
+    if (table.preview(number).size() < number) break;
+    if (is_empty(table.preview(number)[number - 1])) continue;
+    Header header = header_at(number, table, separators, wanted);
+    const bool row = wanted.empty() && begins_with_number(header);
+    if (!row && header.found == wanted.size() && header.names.size() >= fewest) return header;
     if (header.beats(best)) best = std::move(header);
   }
   if (best.line == 0) throw DataError(fmt::format("'{}' has no header line", table.path()));
@@ -143,28 +183,79 @@ const std::string* first_row(TextTable& table) {
   return nullptr;
 }
 
+/// Whether columns that are used, but for times, have blanks in them if cut so.
+bool has_blanks(const std::string& row, Separator separator, const TableMapping& mapping) {
+  Fields fields;
+  cut(row, separator, fields);
+  return std::any_of(mapping.columns.begin(), mapping.columns.end(), [&](const auto& column) {
+    const size_t number = column_number(column.second).value_or(0);
+    if (column.first == "time" || column.first == "date" || number == 0) return false;
+    return number <= fields.size() && fields[number - 1].find(' ') != std::string_view::npos;
+  });
+}
+
 /// Of a table without a header.
 Separator separator_by_row(const TableMapping& mapping, TextTable& table) {
+  static const std::vector<std::pair<char, Separator>> kSigns{
+      {';', Separator::semicolon}, {'\t', Separator::tab}, {',', Separator::comma}};
   const std::vector<Separator> separators = separators_of(mapping);
   const std::string* row = separators.size() > 1 ? first_row(table) : nullptr;
   if (row == nullptr) return separators.front();
-  if (row->find(';') != std::string::npos) return Separator::semicolon;
-  if (row->find('\t') != std::string::npos) return Separator::tab;
-  return row->find(',') != std::string::npos ? Separator::comma : Separator::space;
+  for (const auto& [sign, separator] : kSigns) {
+    if (row->find(sign) != std::string::npos && !has_blanks(*row, separator, mapping)) {
+      return separator;
+    }
+  }
+  return Separator::space;
 }
 
-template <class Value>
-Value needed(const std::optional<Value>& value, const std::string& section, const char* key,
-             const std::string& system) {
-  if (value) return *value;
-  throw UsageError(
-      fmt::format("{}.time.{} is missing; time system '{}' needs it", section, key, system));
+/// Of rows, if all have the same; the first may be one of units. 0: they differ, or are too few.
+size_t common_width(const std::vector<Fields>& rows, size_t of_header) {
+  constexpr size_t kFewest = 3;
+  if (rows.size() < kFewest) return 0;
+  const size_t width = width_of(rows.back(), of_header);
+  const bool same = std::all_of(rows.begin() + 1, rows.end(), [&](const Fields& row) {
+    return width_of(row, of_header) == width;
+  });
+  return same ? width : 0;
 }
 
-/// Midnight, UTC.
-int64_t parse_date(const std::string& date, const std::string& section) {
-  if (const std::optional<int64_t> midnight = date_ns(date)) return *midnight;
-  throw UsageError(fmt::format("{}.time.date: '{}' is no date; write YYYY-MM-DD", section, date));
+/// Columns told by name need a header as wide as the rows.
+void check_names(const TableMapping& mapping, const Header& header, size_t width,
+                 const std::string& path) {
+  if (header.names.empty() || width == header.names.size() || names_of(mapping).empty()) return;
+  const bool doubled = width + 2 >= 2 * header.names.size() && header.separator == Separator::comma;
+  throw UsageError(fmt::format(
+      "'{}' has {} names in its header, line {}, and {} columns in its rows, so that it is open "
+      "which name is whose; tell the columns by their numbers from 1, with header: false{}",
+      path, header.names.size(), header.line, width,
+      doubled ? ", or, if decimal commas stand between separating ones, export it with another "
+                "separator"
+              : ""));
+}
+
+/// The two texts of a column, if pairs of rows that share their time have both, in turn.
+std::optional<std::pair<std::string_view, std::string_view>> two_in_turn(
+    const std::vector<Fields>& rows, size_t time, size_t column) {
+  constexpr size_t kFewest = 20;
+  if (rows.size() < kFewest) return std::nullopt;
+  const auto text = [&](size_t row, size_t of) {
+    return of < rows[row].size() ? rows[row][of] : std::string_view{};
+  };
+  const std::pair two(text(0, column), text(1, column));
+  if (two.first == two.second) return std::nullopt;
+  for (size_t i = 0; i + 1 < rows.size(); i += 2) {
+    const bool in_turn = text(i, column) == two.first && text(i + 1, column) == two.second;
+    if (!in_turn || text(i, time) != text(i + 1, time)) return std::nullopt;
+  }
+  return two;
+}
+
+void skip_row(TextTable& table) {
+  for (bool skipped = false; !skipped;) {
+    const std::optional<std::string_view> line = table.next_line();
+    skipped = !line || (!is_empty(*line) && !is_comment(*line));
+  }
 }
 
 }  // namespace
@@ -176,40 +267,99 @@ TextTable open_mapped_table(const std::string& path) {
 Columns::Columns(const TableMapping& mapping, TextTable& table, const std::string& section,
                  const Names& roles)
     : section_(section) {
-  for (const auto& [role, name] : mapping.columns) {
-    if (std::find(roles.begin(), roles.end(), role) != roles.end()) continue;
-    throw UsageError(fmt::format("{}.columns: '{}' is no role; known: {}", section, role,
-                                 fmt::join(roles, ", ")));
-  }
-  if (!mapping.header) {
-    table.read_as(separator_by_row(mapping, table), decimal_of(mapping));
-    find_roles(mapping, {}, table.path());
-    return;
-  }
-  const Header header = find_header(mapping, table);
+  check_roles(mapping, roles);
+  Header header;
+  header.separator = mapping.header ? Separator::comma : separator_by_row(mapping, table);
+  if (mapping.header) header = find_header(mapping, table);
   table.read_as(header.separator, decimal_of(mapping));
+  std::vector<Fields> rows = first_rows(table, header.line, header.separator, kFirstRows);
+  if (!mapping.rows.value.empty()) {
+    const size_t column =
+        find_column("rows.column", mapping.rows.column, header.names, table.path());
+    const auto is_other = [&](const Fields& row) {
+      return column >= row.size() || row[column] != mapping.rows.value;
+    };
+    rows.erase(std::remove_if(rows.begin(), rows.end(), is_other), rows.end());
+    table.choose(column, mapping.rows.value);
+  }
+  const size_t width = common_width(rows, header.names.size());
+  width_ = width > 0 ? width : header.names.size();
+  check_names(mapping, header, width_, table.path());
   find_roles(mapping, header.names, table.path());
+  if (mapping.decimal == "auto" && header.separator != Separator::comma) {
+    check_commas(rows, table.path());
+  }
+  if (mapping.rows.value.empty()) look_for_sensors(header.names, rows, table.path());
   for (size_t i = 0; i < header.line; ++i) table.next_line();
   const std::string* row = first_row(table);
-  if (row != nullptr && has_units(*row, header.separator)) table.next();
+  if (row != nullptr && has_units(*row, header.separator)) skip_row(table);
+}
+
+void Columns::check_roles(const TableMapping& mapping, const Names& roles) const {
+  for (const auto& [role, name] : mapping.columns) {
+    if (std::find(roles.begin(), roles.end(), role) != roles.end()) continue;
+    throw UsageError(fmt::format("{}.columns: '{}' is no role; known: {}", section_, role,
+                                 fmt::join(roles, ", ")));
+  }
 }
 
 void Columns::find_roles(const TableMapping& mapping, const Names& header,
                          const std::string& path) {
-  width_ = header.size();
   for (const auto& [role, name] : mapping.columns) {
-    const auto found = std::find(header.begin(), header.end(), name);
-    const std::optional<size_t> number = column_number(name);
-    if (found != header.end()) {
-      index_[role] = static_cast<size_t>(found - header.begin());
-    } else if (number && (width_ == 0 || *number <= width_)) {
-      index_[role] = *number - 1;
-    } else {
-      throw UsageError(
-          fmt::format("{}.columns.{}: '{}' has no column '{}'; {}", section_, role, path, name,
-                      header.empty() ? "without a header give its number from 1"
-                                     : fmt::format("it has {}", fmt::join(header, ", "))));
+    index_[role] = find_column("columns." + role, name, header, path);
+  }
+}
+
+size_t Columns::find_column(const std::string& key, const std::string& name, const Names& header,
+                            const std::string& path) const {
+  const auto found = std::find(header.begin(), header.end(), name);
+  const auto again = found == header.end() ? found : std::find(found + 1, header.end(), name);
+  if (again != header.end()) {
+    throw UsageError(fmt::format(
+        "{}.{}: '{}' has two columns '{}', {} and {}; give the number of the right one", section_,
+        key, path, name, found - header.begin() + 1, again - header.begin() + 1));
+  }
+  if (found != header.end()) return static_cast<size_t>(found - header.begin());
+  const std::optional<size_t> number = column_number(name);
+  if (number && (width_ == 0 || *number <= width_)) return *number - 1;
+  throw UsageError(fmt::format("{}.{}: '{}' has no column '{}'; {}", section_, key, path, name,
+                               header.empty() ? "without a header give its number from 1"
+                                              : fmt::format("it has {}", fmt::join(header, ", "))));
+}
+
+/// Of numbers that have three digits behind their only comma, all of them.
+void Columns::check_commas(const std::vector<Fields>& rows, const std::string& path) const {
+  const std::string_view* doubtful = nullptr;
+  for (const Fields& row : rows) {
+    for (const auto& [role, column] : index_) {
+      if (column >= row.size() || !decimal_sign(row[column], ',')) continue;
+      if (!has_thousands(row[column], ',')) return;
+      doubtful = &row[column];
     }
+  }
+  if (doubtful == nullptr) return;
+  throw UsageError(
+      fmt::format("'{}': the comma of '{}' may be decimal or stand between thousands; give "
+                  "{}.decimal: comma for decimals, or {}.decimal: point for thousands",
+                  path, *doubtful, section_, section_));
+}
+
+/// Rows that share their time and differ in a column that is not used, in each group alike.
+void Columns::look_for_sensors(const Names& header, const std::vector<Fields>& rows,
+                               const std::string& path) {
+  const auto time = find("time");
+  if (!time || section_ != "imu") return;
+  for (size_t column = 0; column < width_; ++column) {
+    const auto is_column = [&](const auto& used) { return used.second == column; };
+    if (std::any_of(index_.begin(), index_.end(), is_column)) continue;
+    const std::optional<std::pair<std::string_view, std::string_view>> two =
+        two_in_turn(rows, *time, column);
+    if (!two) continue;
+    notices_.push_back(fmt::format(
+        "{}: two rows share each time and have '{}' and '{}' in column {}; if they are two "
+        "sensors, choose one with {}.rows: {{column: {}, value: \"{}\"}}",
+        path, two->first, two->second, column < header.size() ? header[column] : "", section_,
+        column + 1, two->first));
   }
 }
 
@@ -222,8 +372,7 @@ bool Columns::has_units(std::string_view line, Separator separator) const {
     if (column >= fields.size() || fields[column].empty()) continue;
     const auto first = static_cast<unsigned char>(fields[column].front());
     const bool opens = first == '[' || first == '(' || first >= 0x80;  // such as a degree sign
-    const bool is_nan = std::tolower(first) == 'n' && fields[column].size() == 3;
-    if ((std::isalpha(first) == 0 && !opens) || is_nan) return false;
+    if ((std::isalpha(first) == 0 && !opens) || is_blank_text(fields[column])) return false;
     words = true;
   }
   return words;
@@ -250,79 +399,10 @@ void Columns::check_width(const Row& row) {
   size_t size = fields.size();
   while (size > width_ && fields[size - 1].empty()) --size;
   if (size == width_) return;
-  row.fail(fmt::format("{} columns, {} expected; correct or remove the row", row.size(), width_));
-}
-
-TimeColumn::TimeColumn(const TimeMapping& mapping, const Columns& columns)
-    : time_(columns.of("time")),
-      date_(columns.find("date")),
-      system_(mapping.system),
-      offset_ns_(nanoseconds(mapping.offset_s)) {
-  static const std::map<std::string, int> kDecimals{{"s", 9}, {"ms", 6}, {"us", 3}, {"ns", 0}};
-  decimals_ = kDecimals.at(mapping.unit);
-  const std::string& section = columns.section();
-  if (system_ == "gps_week_sow") {
-    week_column_ = columns.of("week");
-  } else if (system_ == "gps_sow" || system_ == "boot") {
-    week_ = std::llround(needed(mapping.gps_week, section, "gps_week", system_));
-    if (system_ == "boot") {
-      origin_ns_ = nanoseconds(needed(mapping.boot_sow, section, "boot_sow", system_));
-    } else {
-      rolling_.emplace(kNanosecondsPerWeek);
-    }
-  } else if (system_ != "gps") {
-    gps_ = false;
-    if (system_ != "seconds_of_day") return;
-    origin_ns_ = parse_date(mapping.date, section);
-    rolling_.emplace(kSecondsPerDay * kNanosecondsPerSecond);
-  }
-}
-
-bool TimeColumn::is_text(const Row& row) const {
-  return system_ == "iso8601" || row.text(time_).find(':') != std::string_view::npos;
-}
-
-int64_t TimeColumn::stamp(const Row& row) {
-  if (is_text(row) && system_ != "seconds_of_day") {
-    return checked_stamp(row, calendar(row) + offset_ns_);
-  }
-  const int64_t time_ns = number(row) + origin_ns_ + offset_ns_;
-  if (!gps_) return checked_stamp(row, time_ns);
-  return gps_stamp(row, week_column_ ? row.integer(*week_column_) : week_, time_ns);
-}
-
-int64_t TimeColumn::calendar(const Row& row) const {
-  const std::string time(row.text(time_));
-  if (gps_) {
-    row.fail(
-        fmt::format("column {} is '{}', not a number; give time: {{system: iso8601}} for dates "
-                    "in UTC",
-                    time_ + 1, time));
-  }
-  const std::string text = date_ ? fmt::format("{} {}", row.text(*date_), time) : time;
-  if (const std::optional<int64_t> t_ns = calendar_ns(text)) return *t_ns;
   row.fail(fmt::format(
-      "'{}' is no date and time such as 2024-02-07T11:59:42.02Z; correct or remove the row{}", text,
-      date_ ? "" : ", name a column `date` beside `time`, or give time: {system: seconds_of_day}"));
-}
-
-/// The time column [ns], with what it went on for since the first row.
-int64_t TimeColumn::number(const Row& row) {
-  int64_t time_ns = 0;
-  if (!is_text(row)) {
-    time_ns = row.scaled(time_, decimals_);
-  } else if (const std::optional<int64_t> time = time_of_day_ns(row.text(time_))) {
-    time_ns = *time;
-  } else {
-    row.fail(fmt::format("'{}' is no time of day; correct or remove the row", row.text(time_)));
-  }
-  if (!rolling_) return time_ns;
-  constexpr int64_t kMost = 1'000'000'000 * kNanosecondsPerSecond;  // some thirty years
-  if (std::abs(time_ns) > kMost) {
-    row.fail(fmt::format("column {} is '{}', out of range; correct or remove the row", time_ + 1,
-                         row.text(time_)));
-  }
-  return rolling_->unrolled(time_ns);
+      "{} columns, {} expected; if there are rows of several kinds, choose some with {}.rows: "
+      "{{column: NUMBER, value: TEXT}}, else correct or remove the row",
+      row.size(), width_, section_));
 }
 
 }  // namespace foucault::rawlog

@@ -6,10 +6,9 @@
 #include <vector>
 
 #include "foucault/rawlog/import_mapping.h"
-#include "import_run.h"
 #include "text_table.h"
 
-/// Where a mapping's columns stand in its table, and what its times mean.
+/// Where a mapping's columns stand in its table.
 namespace foucault::rawlog {
 
 /// Opens the table of a mapping; Columns finds out how it is to be read.
@@ -19,9 +18,11 @@ TextTable open_mapped_table(const std::string& path);
 class Columns {
  public:
   /// Reads what stands before the first row: other lines, the header if there is one (the first
-  /// line that has all named columns), units under it. Finds the separator by it. `section` (imu,
-  /// gnss, reference) is for messages.
-  /// Throws UsageError for unknown roles and columns that are not there.
+  /// line that has all named columns), units under it. Finds the separator by them and by the rows,
+  /// whose width counts where the header has another. `section` (imu, gnss, reference) is for
+  /// messages.
+  /// Throws UsageError for unknown roles, columns that are not there or stand there twice, and
+  /// commas that may be decimal or between thousands.
   Columns(const TableMapping& mapping, TextTable& table, const std::string& section,
           const std::vector<std::string>& roles);
 
@@ -34,41 +35,26 @@ class Columns {
   /// behind them may be empty.
   void check_width(const Row& row);
   const std::string& section() const { return section_; }
+  /// What the table may mean otherwise.
+  const std::vector<std::string>& notices() const { return notices_; }
 
  private:
+  void check_roles(const TableMapping& mapping, const std::vector<std::string>& roles) const;
   void find_roles(const TableMapping& mapping, const std::vector<std::string>& header,
                   const std::string& path);
+  size_t find_column(const std::string& key, const std::string& name,
+                     const std::vector<std::string>& header, const std::string& path) const;
   bool has_units(std::string_view line, TextTable::Separator separator) const;
+  void check_commas(const std::vector<std::vector<std::string_view>>& rows,
+                    const std::string& path) const;
+  void look_for_sensors(const std::vector<std::string>& header,
+                        const std::vector<std::vector<std::string_view>>& rows,
+                        const std::string& path);
 
   std::string section_;
   std::map<std::string, size_t> index_;
-  size_t width_ = 0;
-};
-
-/// The time column of a row, or its date and time, as a stamp, with the constant offset.
-class TimeColumn {
- public:
-  /// Throws UsageError if the mapping is incomplete.
-  TimeColumn(const TimeMapping& mapping, const Columns& columns);
-
-  /// Of one row after the other: times that begin again with their day or week go on.
-  int64_t stamp(const Row& row);
-
- private:
-  bool is_text(const Row& row) const;
-  int64_t calendar(const Row& row) const;
-  int64_t number(const Row& row);
-
-  size_t time_;
-  std::optional<size_t> date_;
-  std::optional<size_t> week_column_;
-  std::optional<RollingTime> rolling_;
-  std::string system_;
-  int decimals_ = 9;
-  bool gps_ = true;
-  int64_t week_ = 0;
-  int64_t origin_ns_ = 0;  ///< of the time column, in the GPS week or on the UNIX scale
-  int64_t offset_ns_ = 0;
+  size_t width_ = 0;  ///< 0: as the first row
+  std::vector<std::string> notices_;
 };
 
 }  // namespace foucault::rawlog

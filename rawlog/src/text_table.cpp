@@ -7,16 +7,16 @@
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
-#include <filesystem>
+#include <cstring>
 #include <set>
 
 namespace foucault::rawlog {
 
 namespace {
 
-constexpr size_t kLongestLine = 1U << 16;
-
 bool is_space(char c) { return c == ' ' || c == '\t' || c == '\r'; }
+
+unsigned char to_byte(char c) { return static_cast<unsigned char>(c); }
 
 std::string_view trimmed(std::string_view text) {
   while (!text.empty() && is_space(text.front())) text.remove_prefix(1);
@@ -52,24 +52,93 @@ size_t end_of_field(std::string_view line, size_t begin, const char* signs) {
 
 std::string_view without_quotes(std::string_view field) {
   field = trimmed(field);
-  if (field.size() < 2 || field.front() != '"' || field.back() != '"') return field;
+  if (field.size() < 2 || field.front() != field.back()) return field;
+  if (field.front() != '"' && field.front() != '\'') return field;
   return trimmed(field.substr(1, field.size() - 2));
 }
 
-/// Where `sign` stands between the digits of a number.
+std::optional<double> parsed(std::string_view field) {
+  if (!field.empty() && field.front() == '+') field.remove_prefix(1);
+  double value = 0;
+  const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
+  const bool whole = error == std::errc{} && end == field.data() + field.size();
+  return whole ? std::optional(value) : std::nullopt;
+}
+
+/// With the minus and the exponent of C.
+std::string as_in_c(std::string_view field) {
+  constexpr std::string_view kMinus = "\xE2\x88\x92";
+  std::string text(field);
+  for (size_t at = 0; (at = text.find(kMinus, at)) != std::string::npos;) {
+    text.replace(at, kMinus.size(), "-");
+  }
+  const size_t exponent = text.find_first_of("dD");
+  if (exponent != std::string::npos && text.find('.') < exponent) text[exponent] = 'e';
+  return text;
+}
+
+size_t digits_at(std::string_view text, size_t at) {
+  return std::min(text.find_first_not_of("0123456789", at), text.size()) - at;
+}
+
+/// What may be done about a cell that is no number.
+std::string advice(std::string_view field) {
+  if (has_thousands(field, ',')) {
+    return "if its comma stands between thousands, give decimal: point, if it is a decimal comma, "
+           "decimal: comma, else ";
+  }
+  if (has_thousands(field, '.')) {
+    return "if its points stand between thousands, give decimal: comma, else ";
+  }
+  if (decimal_sign(field, ',')) {
+    return "if that is a decimal comma, give decimal: comma in the mapping, else ";
+  }
+  const bool is_hex = !field.empty() &&
+                      field.find_first_not_of("0123456789abcdefABCDEFxX") == std::string_view::npos;
+  return is_hex ? "if it is hexadecimal, turn the column into decimal numbers, else " : "";
+}
+
+}  // namespace
+
+bool is_blank_text(std::string_view field) {
+  static const std::set<std::string> kWords{"nan",   "null",    "none",   "nil",      "na",
+                                            "n/a",   "inf",     "#n/a",   "infinity", "#num",
+                                            "#num!", "#value!", "#div/0!"};
+  constexpr size_t kLongest = 12;
+  if (field.find_first_not_of("-.*") == std::string_view::npos) return true;
+  if (field.front() == '-' || field.front() == '+') field.remove_prefix(1);
+  constexpr std::string_view kOfMicrosoft = "1.#";  // 1.#QNAN, 1.#IND, 1.#INF
+  if (field.substr(0, kOfMicrosoft.size()) == kOfMicrosoft) return true;
+  if (field.empty() || field.size() > kLongest || std::isdigit(to_byte(field[0])) != 0)
+    return false;
+  std::string word(field.substr(0, field.find('(')));  // nan(ind)
+  std::transform(word.begin(), word.end(), word.begin(),
+                 [](char c) { return static_cast<char>(std::tolower(to_byte(c))); });
+  return kWords.count(word) > 0;
+}
+
 std::optional<size_t> decimal_sign(std::string_view field, char sign) {
   const size_t at = field.find(sign);
   if (at == std::string_view::npos) return std::nullopt;
   std::string number(field);
   number[at] = '.';
-  const char* begin = number.c_str() + (number.front() == '+' ? 1 : 0);
-  const char* end = number.c_str() + number.size();
-  double value = 0;
-  const auto read = std::from_chars(begin, end, value);
-  return read.ec == std::errc{} && read.ptr == end ? std::optional(at) : std::nullopt;
+  return parsed(number) ? std::optional(at) : std::nullopt;
 }
 
-}  // namespace
+bool has_thousands(std::string_view field, char sign) {
+  constexpr size_t kGroup = 3;
+  const size_t end = std::min(field.find(sign == ',' ? '.' : ','), field.size());
+  if (sign == '.' && end == field.size()) return false;
+  size_t at = field.find_first_not_of("+-") == 1 ? 1 : 0;
+  const size_t first = digits_at(field, at);
+  if (first < 1 || first > kGroup || field[at] == '0') return false;
+  at += first;
+  if (at == end) return false;
+  for (; at < end; at += 1 + kGroup) {
+    if (field[at] != sign || digits_at(field, at + 1) != kGroup) return false;
+  }
+  return at == end && (end == field.size() || end + 1 + digits_at(field, end + 1) == field.size());
+}
 
 std::string_view Row::text(size_t column) const {
   if (column >= fields_.size()) {
@@ -79,35 +148,19 @@ std::string_view Row::text(size_t column) const {
   return fields_[column];
 }
 
-bool Row::is_blank(size_t column) const {
-  static const std::set<std::string> kWords{"",    "nan", "-nan", "+nan", "null", "none",
-                                            "nil", "na",  "n/a",  "-",    "--"};
-  constexpr size_t kLongest = 4;
-  const std::string_view field = text(column);
-  if (field.size() > kLongest) return false;
-  std::string word(field);
-  std::transform(word.begin(), word.end(), word.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return kWords.count(word) > 0;
-}
-
 double Row::number(size_t column) const {
-  std::string_view field = text(column);
-  if (!field.empty() && field.front() == '+') field.remove_prefix(1);
-  double value = 0;
-  const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
-  if (error != std::errc{} || end != field.data() + field.size()) {
-    fail(fmt::format(
-        "column {} is '{}', not a number; {}correct or remove the row", column + 1, text(column),
-        decimal_sign(field, ',') ? "if that is a decimal comma, give decimal: comma in "
-                                   "the mapping, else "
-                                 : ""));
+  const std::string_view field = text(column);
+  std::optional<double> value = parsed(field);
+  if (!value) value = parsed(as_in_c(field));
+  if (!value) {
+    fail(fmt::format("column {} is '{}', not a number; {}correct or remove the row", column + 1,
+                     field, advice(field)));
   }
-  if (!std::isfinite(value)) {
-    fail(fmt::format("column {} is '{}', not finite; correct or remove the row", column + 1,
-                     text(column)));
+  if (!std::isfinite(*value)) {
+    fail(
+        fmt::format("column {} is '{}', not finite; correct or remove the row", column + 1, field));
   }
-  return value;
+  return *value;
 }
 
 int64_t Row::integer(size_t column) const {
@@ -159,12 +212,7 @@ TextTable::TextTable(const std::string& path, Separator separator, std::string c
     : path_(std::move(named)),
       separator_(separator),
       comment_signs_(std::move(comment_signs)),
-      file_(open_for_reading(path)),
-      buffer_(kLongestLine, '\0') {
-  gzbuffer(file_.get(), kGzipBuffer);
-  std::error_code error;
-  const auto size = std::filesystem::file_size(path, error);
-  file_size_ = error ? 0 : static_cast<double>(size);
+      lines_(path, path_) {
   row_.path_ = &path_;
 }
 
@@ -173,15 +221,24 @@ void TextTable::read_as(Separator separator, Decimal decimal) {
   decimal_ = decimal;
 }
 
+void TextTable::choose(size_t column, std::string value) {
+  chosen_.emplace(column, std::move(value));
+}
+
+std::string_view TextTable::keep(std::string_view line) {
+  buffer_.assign(line);
+  ++row_.line_;
+  return buffer_;
+}
+
 std::optional<std::string_view> TextTable::next_line() {
   if (ahead_.empty()) {
     const std::optional<std::string_view> line = read_line();
-    row_.line_ = lines_read_;
-    return line;
+    if (!line) check_end();
+    return line ? std::optional(keep(*line)) : std::nullopt;
   }
-  const std::string_view line(buffer_.data(), ahead_.front().copy(buffer_.data(), kLongestLine));
+  const std::string_view line = keep(ahead_.front());
   ahead_.pop_front();
-  ++row_.line_;
   return line;
 }
 
@@ -194,54 +251,55 @@ const std::deque<std::string>& TextTable::preview(size_t lines) {
   return ahead_;
 }
 
+/// Without zeros, which stand where a logger lost its power.
 std::optional<std::string_view> TextTable::read_line() {
-  const std::optional<std::string_view> line = read_bytes();
-  return line ? std::optional(line->substr(0, line->find('\0'))) : std::nullopt;
+  std::optional<std::string_view> line = lines_.next();
+  if (!line) return std::nullopt;
+  const size_t length = line->size();
+  line->remove_prefix(std::min(line->find_first_not_of('\0'), length));
+  line = line->substr(0, line->find('\0'));
+  zeros_ += static_cast<int64_t>(length - line->size());
+  return line;
 }
 
 std::optional<std::string_view> TextTable::next_bytes() {
-  const std::optional<std::string_view> line = read_bytes();
-  row_.line_ = lines_read_;
-  return line;
+  const std::optional<std::string_view> line = lines_.next();
+  if (!line) check_end();
+  return line ? std::optional(keep(*line)) : std::nullopt;
 }
 
-std::optional<std::string_view> TextTable::read_bytes() {
-  const z_off_t begin = gztell(file_.get());
-  if (gzgets(file_.get(), buffer_.data(), static_cast<int>(buffer_.size())) == nullptr) {
-    int error = Z_OK;
-    gzerror(file_.get(), &error);
-    if (error != Z_OK && error != Z_STREAM_END) {
-      throw DataError(fmt::format("'{}' is truncated or damaged after line {}; copy it again",
-                                  path_, lines_read_));
-    }
-    return std::nullopt;
-  }
-  ++lines_read_;
-  const auto length = static_cast<size_t>(gztell(file_.get()) - begin);
-  if (length + 1 == buffer_.size()) {
-    throw DataError(
-        fmt::format("{}:{}: the line is longer than {} characters; is this a text file?", path_,
-                    lines_read_, kLongestLine - 1));
-  }
-  std::string_view line(buffer_.data(), length);
-  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-  if (lines_read_ == 1 && line.substr(0, 3) == kByteOrderMark) line.remove_prefix(3);
-  while (!line.empty() && (line.back() == '\n' || line.back() == '\r')) line.remove_suffix(1);
-  return line;
+void TextTable::check_end() {
+  if (!lines_.is_cut() || std::exchange(end_is_told_, true)) return;
+  row_.fail("the gzip file is cut off behind this line; get the whole one");
+}
+
+std::vector<std::string> TextTable::notices() const {
+  const int64_t zeros = zeros_ + lines_.zeros();
+  if (zeros == 0) return {};
+  return {
+      fmt::format("{}: {} bytes of zeros, as a logger leaves them that loses its power, were "
+                  "left out",
+                  path_, zeros)};
 }
 
 const Row* TextTable::next() {
   while (const std::optional<std::string_view> line = next_line()) {
     const std::string_view text = trimmed(*line);
     if (text.empty() || comment_signs_.find(text.front()) != std::string::npos) continue;
-    return &split(*line);
+    split(*line);
+    if (is_chosen()) return &row_;
   }
   return nullptr;
 }
 
+bool TextTable::is_chosen() const {
+  if (!chosen_) return true;
+  const auto& [column, value] = *chosen_;
+  return column < row_.size() && row_.fields_[column] == value;
+}
+
 /// In the buffer, to which the fields point.
 void TextTable::turn_decimal_commas() {
-  if (decimal_ == Decimal::point) return;
   const bool found = decimal_ == Decimal::automatic;
   if (found && (separator_ == Separator::comma || separator_ == Separator::space_or_comma)) return;
   std::vector<char*> commas;
@@ -258,9 +316,21 @@ void TextTable::turn_decimal_commas() {
   for (char* comma : commas) *comma = '.';
 }
 
+/// The sign that is not the decimal one.
+void TextTable::drop_thousands() {
+  const char sign = decimal_ == Decimal::point ? ',' : '.';
+  for (std::string_view& field : row_.fields_) {
+    if (!has_thousands(field, sign)) continue;
+    char* begin = buffer_.data() + (field.data() - buffer_.data());
+    const char* end = std::remove(begin, begin + field.size(), sign);
+    field = {begin, static_cast<size_t>(end - begin)};
+  }
+}
+
 const Row& TextTable::split(std::string_view line) {
   cut(line, separator_, row_.fields_);
-  turn_decimal_commas();
+  if (decimal_ != Decimal::automatic) drop_thousands();
+  if (decimal_ != Decimal::point) turn_decimal_commas();
   return row_;
 }
 
@@ -279,10 +349,5 @@ void cut(std::string_view line, TextTable::Separator separator,
 }
 
 std::string TextTable::place(int64_t line) const { return fmt::format("{}:{}", path_, line); }
-
-double TextTable::progress() const {
-  return file_size_ > 0 ? std::min(1.0, static_cast<double>(gzoffset(file_.get())) / file_size_)
-                        : 1.0;
-}
 
 }  // namespace foucault::rawlog

@@ -10,6 +10,7 @@
 #include "foucault/rawlog/rawlog_source.h"
 #include "foucault/rawlog/recording_notes.h"
 #include "scratch.h"
+#include "text_table.h"
 
 /// Tables as loggers write them: each dialect gives what the plain table gives.
 namespace foucault::rawlog {
@@ -134,10 +135,136 @@ TEST_F(Dialects, DecimalCommasBetweenCommasNeedTheKey) {
 
 TEST_F(Dialects, CommasThatMayBeOfThousandsAreRefused) {
   gnss("t;lat;lon;h\n100.01;47.5;-8.25;1,400\n");
-  EXPECT_THAT(error_of<DataError>([&] { run(); }), HasSubstr("column 4 is '1,400', not a number"));
-  gnss("t;lat;lon;h\n100;47;-8;1,400\n");
-  EXPECT_THAT(error_of<DataError>([&] { run("", std::string(kTime) + "  decimal: point\n"); }),
-              HasSubstr("column 4 is '1,400', not a number"));
+  EXPECT_THAT(error_of<UsageError>([&] { run(); }),
+              AllOf(HasSubstr("comma of '1,400' may be decimal or stand between thousands"),
+                    HasSubstr("gnss.decimal: point")));
+  run("", std::string(kTime) + "  decimal: point\n");
+  EXPECT_NEAR(fix().antenna.height, 1400, 1e-9);
+  gnss("t;lat;lon;h\n100,01;47,5;-8,25;1,400\n");  // others have no three decimals
+  run();
+  EXPECT_NEAR(fix().antenna.height, 1.4, 1e-9);
+  gnss("t,lat,lon,h\n100.01,47.5,-8.25,\"1,400\"\n");
+  EXPECT_THAT(error_of<DataError>([&] { run(); }),
+              HasSubstr("if its comma stands between thousands, give decimal: point"));
+}
+
+TEST_F(Dialects, PointsBetweenThousandsNeedTheKey) {
+  gnss("t;lat;lon;h\n100,01;47,5;-8,25;1.400,25\n");
+  EXPECT_THAT(error_of<DataError>([&] { run(); }), HasSubstr("give decimal: comma"));
+  run("", std::string(kTime) + "  decimal: comma\n");
+  EXPECT_NEAR(fix().antenna.height, 1400.25, 1e-9);
+  EXPECT_FALSE(has_thousands("0.400,25", '.'));
+  EXPECT_FALSE(has_thousands("1.400", '.'));
+  EXPECT_FALSE(has_thousands("1,40", ','));
+  EXPECT_FALSE(has_thousands("1234,400", ','));
+  EXPECT_TRUE(has_thousands("-1,234,400.5", ','));
+}
+
+TEST_F(Dialects, NumbersOfFortranAndOfTypesetters) {
+  gnss(
+      "t,lat,lon,h\n1.0001D+02,0.475d+02,\xE2\x88\x92"
+      "8.25,4.005D2\n");
+  run();
+  expect_plain();
+  gnss("t,lat,lon,h\n100.01,47.5,-8.25,00D6\n");
+  EXPECT_THAT(error_of<DataError>([&] { run(); }), HasSubstr("if it is hexadecimal"));
+}
+
+TEST_F(Dialects, ANameThatStandsTwiceIsNoName) {
+  gnss("t,h,lat,lon,h\n100.01,0,47.5,-8.25,400.5\n");
+  EXPECT_THAT(error_of<UsageError>([&] { run(); }),
+              HasSubstr("gnss.csv' has two columns 'h', 2 and 5; give the number"));
+  run("", kTime, "height: 5");
+  expect_plain();
+}
+
+TEST_F(Dialects, SeparatorsThatTheRowsHave) {
+  imu(replaced(kImuRows, ",", ";").replace(0, 19, "t ; gx ; gy ; gz ; ax ; ay ; az"));
+  run();
+  expect_plain();
+  imu("t , gx , gy , gz , ax , ay , az\n" + std::string(kImuRows).substr(20));
+  run();
+  expect_plain();
+}
+
+TEST_F(Dialects, TheRowsTellTheWidth) {
+  const std::string row_names = "1," + replaced(std::string(kImuRows).substr(20), "\n1", "\n1,1");
+  imu("t,gx,gy,gz,ax,ay,az\n" + row_names);
+  EXPECT_THAT(error_of<UsageError>([&] { run(); }),
+              AllOf(HasSubstr("7 names in its header, line 1, and 8 columns in its rows"),
+                    HasSubstr("header: false")));
+  const std::string numbers =
+      "imu:\n  file: imu.csv\n  header: {}\n  columns: {{time: 2, gyro_x: 3, gyro_y: 4, gyro_z: 5, "
+      "accel_x: 6, accel_y: 7, accel_z: 8}}\n{}gnss:\n  file: gnss.csv\n  columns: {{time: t, "
+      "latitude: lat, longitude: lon, height: h}}\n  sigma_m: [1, 2, 3]\n{}";
+  for (const char* header : {"true", "false"}) {
+    scratch_.text_file("mapping.yaml", fmt::format(fmt::runtime(numbers), header, kTime, kTime));
+    import_csv(options_);
+    expect_plain();
+  }
+}
+
+TEST_F(Dialects, RowsOfOneKind) {
+  const std::string imu_rows = replaced(std::string(kImuRows).substr(19), "\n100", "\n$IMU,100");
+  imu("$GPS,100.01,47.5,-8.25,400.5" + imu_rows);
+  const std::string mapping =
+      "imu:\n  file: imu.csv\n  header: false\n  columns: {time: 2, gyro_x: 3, gyro_y: 4, gyro_z: "
+      "5, accel_x: 6, accel_y: 7, accel_z: 8}\nROWSIMU" +
+      std::string(kTime) +
+      "gnss:\n  file: imu.csv\n  header: false\n  columns: {time: 2, latitude: 3, longitude: 4, "
+      "height: 5}\n  sigma_m: [1, 2, 3]\nROWSGPS" +
+      kTime;
+  const auto chosen = [](const char* kind) {
+    return fmt::format("  rows: {{column: 1, value: ${}}}\n", kind);
+  };
+  scratch_.text_file("mapping.yaml", replaced(replaced(mapping, "ROWSIMU", chosen("IMU")),
+                                              "ROWSGPS", chosen("GPS")));
+  import_csv(options_);
+  expect_plain();
+  scratch_.text_file("mapping.yaml", replaced(replaced(mapping, "ROWSIMU", ""), "ROWSGPS", ""));
+  EXPECT_THAT(error_of<DataError>([&] { import_csv(options_); }), HasSubstr("imu.rows: {column"));
+}
+
+TEST_F(Dialects, TwoSensorsInATableAreTold) {
+  std::string rows = "t,id,gx,gy,gz,ax,ay,az\n";
+  for (int i = 0; i < 20; ++i) {
+    rows +=
+        fmt::format("{0:.2f},A,0.5,-1.5,2,0.25,0.5,-9.5\n{0:.2f},B,1,1,1,1,1,1\n", 100 + 0.01 * i);
+  }
+  imu(rows);
+  EXPECT_THAT(run().imu.notices.at(0),
+              HasSubstr("choose one with imu.rows: {column: 2, value: \"A\"}"));
+  EXPECT_TRUE(run("  rows: {column: id, value: A}\n").imu.notices.empty());
+  EXPECT_EQ(all<ImuIncrement>().size(), 19U);
+  EXPECT_TRUE(all<ImuIncrement>()[0].dtheta_b.isApprox(0.01 * Eigen::Vector3d(0.5, -1.5, 2), 1e-9));
+}
+
+TEST_F(Dialects, LineEndsEncodingsAndZeros) {
+  imu(replaced(kImuRows, "\n", "\r"));
+  run();
+  expect_plain();
+  for (const bool little : {true, false}) {
+    std::string wide = little ? "\xFF\xFE" : "\xFE\xFF";
+    for (const char c : std::string(kImuRows)) {
+      wide += little ? std::string{c, '\0'} : std::string{'\0', c};
+    }
+    imu(wide);
+    run();
+    expect_plain();
+  }
+  imu(kImuRows + std::string(200'000, '\0'));
+  EXPECT_THAT(run().imu.notices.at(0), HasSubstr("200000 bytes of zeros"));
+  expect_plain();
+  imu("PK\x03\x04 and so on\n");
+  EXPECT_THAT(error_of<DataError>([&] { run(); }), HasSubstr("is a zip archive"));
+}
+
+TEST_F(Dialects, ManyLinesBeforeTheHeader) {
+  std::string before;
+  for (int i = 0; i < 400; ++i) before += fmt::format("setting {}: value\n", i);
+  imu(before + kImuRows);
+  run();
+  expect_plain();
 }
 
 TEST_F(Dialects, LinesBeforeTheHeaderAndComments) {
@@ -212,6 +339,20 @@ TEST_F(Dialects, BlankCellsOfMergedTables) {
   EXPECT_THAT(error_of<DataError>([&] { run(); }), HasSubstr("column 4 is ''"));
 }
 
+TEST_F(Dialects, SpellingsOfNoNumber) {
+  const std::string keys = std::string(kTime) + "  velocity_sigma_m_s: [1, 1, 1]\n";
+  const std::string columns = "height: h, velocity_north: n, velocity_east: n, velocity_down: n";
+  for (const char* blank : {"", "NaN", "-nan(ind)", "1.#QNAN", "-1.#IND00", "inf", "-Inf", "***",
+                            "#N/A", "---.-", "NULL", "none", "#DIV/0!"}) {
+    gnss(fmt::format("t,lat,lon,h,n\n100.01,47.5,-8.25,400.5,{}\n", blank));
+    EXPECT_EQ(run("", keys, columns).with_velocity, 0) << blank;
+    expect_plain();
+  }
+  for (const char* word : {"north", "1.5m", "infra", "-x", "1.2.3"}) {
+    EXPECT_FALSE(is_blank_text(word)) << word;
+  }
+}
+
 TEST_F(Dialects, FixesKeepTheirPositionWithoutAVelocity) {
   const std::string keys = std::string(kTime) + "  velocity_sigma_m_s: [1, 1, 1]\n";
   const std::string columns = "height: h, velocity_north: n, velocity_east: e, velocity_down: d";
@@ -231,7 +372,9 @@ TEST(CalendarText, DatesAndTimes) {
   for (const char* text :
        {"2024-02-07T11:59:42.020Z", "2024-02-07 11:59:42.02", "2024/02/07 11:59:42,020",
         "20240207T115942.020Z", "07.02.2024 11:59:42.020", "2024-02-07T12:59:42.020+01:00",
-        "2024-02-07T06:29:42.020 -0530", "2024-02-07  11:59:42.0200000009 UTC"}) {
+        "2024-02-07T06:29:42.020 -0530", "2024-02-07  11:59:42.0200000009 UTC",
+        "2024-02-07 11:59:42.020 GMT", "2024-02-07 11:59:42:020", "07.02.24 11:59:42.020",
+        "07-Feb-2024 11:59:42.020", "2024-FEB-07T11:59:42.020", "2024.02.07 11:59:42.020 AM"}) {
     EXPECT_EQ(calendar_ns(text), expected) << text;
   }
   EXPECT_EQ(calendar_ns("2024-02-29T00:00:00"), date_ns("2024-02-29"));
@@ -242,6 +385,135 @@ TEST(CalendarText, DatesAndTimes) {
         "2024-02-07T11:59:42Zx", "24-02-07T11:59:42", "2024-02/07T11:59:42", "T", "2024-02-07T"}) {
     EXPECT_FALSE(calendar_ns(text)) << text;
   }
+}
+
+TEST(CalendarText, DaysAndMonths) {
+  EXPECT_EQ(date_ns("13/02/2024"), date_ns("2024-02-13"));
+  EXPECT_EQ(date_ns("02/13/2024"), date_ns("2024-02-13"));
+  EXPECT_EQ(date_ns("02-02-2024"), date_ns("2024-02-02"));
+  EXPECT_FALSE(date_ns("02/07/2024"));
+  EXPECT_EQ(date_ns("02/07/2024", "%m/%d/%Y"), date_ns("2024-02-07"));
+  EXPECT_EQ(date_ns("070224", "%d%m%y"), date_ns("2024-02-07"));
+  for (const char* none : {"070224", "02/07/24", "13/13/2024", "30-Feb-2024", "07-Fxb-2024"}) {
+    EXPECT_FALSE(date_ns(none)) << none;
+  }
+  EXPECT_TRUE(is_date_format("%d/%m/%Y"));
+  for (const char* none : {"", "d/m/y", "%H:%M", "%d/%", "%d %T"}) {
+    EXPECT_FALSE(is_date_format(none)) << none;
+  }
+}
+
+TEST(CalendarText, HalvesOfTheDay) {
+  const int64_t hour = 3600 * kNanosecondsPerSecond;
+  EXPECT_EQ(time_of_day_ns("12:00:00 AM"), 0);
+  EXPECT_EQ(time_of_day_ns("12:00:00.0 pm"), 12 * hour);
+  EXPECT_EQ(time_of_day_ns("1:00:00PM"), 13 * hour);
+  EXPECT_EQ(time_of_day_ns("13:00:00Z"), 13 * hour);
+  EXPECT_EQ(time_of_day_ns("00:00:00:020"), 20 * kMs);
+  for (const char* none : {"13:00:00 PM", "0:00:00 AM", "1:00:00 XM", "00:00:00:20"}) {
+    EXPECT_FALSE(time_of_day_ns(none)) << none;
+  }
+}
+
+TEST_F(Dialects, DatesOfAFormat) {
+  gnss("t,lat,lon,h\n03/06/2022 00:01:22.01,47.5,-8.25,400.5\n");
+  const std::string time = "  time: {system: iso8601";
+  EXPECT_THAT(error_of<DataError>([&] { run("", time + "}\n"); }),
+              HasSubstr("tell gnss.time.date_format"));
+  run("", time + ", date_format: \"%m/%d/%Y\"}\n");
+  expect_plain();
+  EXPECT_THAT(error_of<UsageError>([&] { run("", time + ", date_format: \"%H\"}\n"); }),
+              HasSubstr("'%H' is no format of a date"));
+  gnss("d,t,lat,lon,h\n060322,000122.01,47.5,-8.25,400.5\n");
+  run("", time + ", date_format: \"%d%m%y\"}\n", "height: h, date: d");
+  expect_plain();
+}
+
+TEST_F(Dialects, TimesInParts) {
+  gnss("y,mo,d,h24,mi,t,lat,lon,h\n2022,03,06,0,1,22.01,47.5,-8.25,400.5\n");
+  const std::string parts =
+      "height: h, year: y, month: mo, day: d, hour: h24, minute: mi, second: t";
+  run("", "  time: {system: iso8601}\n", parts);
+  expect_plain();
+  EXPECT_THAT(error_of<UsageError>([&] { run("", kTime, parts); }), HasSubstr("system: iso8601"));
+  gnss("y,mo,d,h24,mi,t,lat,lon,h\n2022,02,30,0,1,22.01,47.5,-8.25,400.5\n");
+  EXPECT_THAT(error_of<DataError>([&] { run("", "  time: {system: iso8601}\n", parts); }),
+              HasSubstr("are no date"));
+  gnss("t,ns,lat,lon,h\n1646524882,10000000,47.5,-8.25,400.5\n");
+  run("", "  time: {system: unix}\n", "height: h, nanosecond: ns");
+  expect_plain();
+}
+
+TEST_F(Dialects, DayNumbers) {
+  // 2022-03-06T00:01:22.01Z
+  gnss("t,lat,lon,h\n44626.000949189815,47.5,-8.25,400.5\n");
+  EXPECT_THAT(error_of<DataError>([&] { run("", "  time: {system: unix}\n"); }),
+              AllOf(HasSubstr("gnss.csv:2: column 1 is '44626"), HasSubstr("system: excel")));
+  run("", "  time: {system: excel}\n");
+  EXPECT_NEAR(static_cast<double>(fix().t_ns - gps_to_unix_ns(2200, 100.01)), 0, 1000);
+  gnss("t,lat,lon,h\n738586.000949189815,47.5,-8.25,400.5\n");
+  run("", "  time: {system: matlab_datenum}\n");
+  EXPECT_NEAR(static_cast<double>(fix().t_ns - gps_to_unix_ns(2200, 100.01)), 0, 1000);
+}
+
+TEST_F(Dialects, UnitsOfTimesThatAreOutOfRange) {
+  gnss("t,lat,lon,h\n1646524882010,47.5,-8.25,400.5\n");
+  EXPECT_THAT(error_of<DataError>([&] { run("", "  time: {system: unix}\n"); }),
+              HasSubstr("if it is in ms, give gnss.time.unit: ms"));
+  gnss("t,lat,lon,h\n100010000000,47.5,-8.25,400.5\n");
+  EXPECT_THAT(error_of<DataError>([&] { run(); }), HasSubstr("if it is in us"));
+}
+
+TEST_F(Dialects, WeeksModulo1024) {
+  gnss("w,t,lat,lon,h\n152,100.01,47.5,-8.25,400.5\n");
+  EXPECT_THAT(error_of<DataError>(
+                  [&] { run("", "  time: {system: gps_week_sow}\n", "height: h, week: w"); }),
+              HasSubstr("give gnss.time.add_weeks: 2048"));
+  run("", "  time: {system: gps_week_sow, add_weeks: 2048}\n", "height: h, week: w");
+  expect_plain();
+}
+
+TEST_F(Dialects, CountersOf32BitsGoOn) {
+  const std::string time =
+      "  time: {system: boot, unit: us, gps_week: 2200, boot_sow: -4194.9672}\n";
+  const auto rows = [](const char* second, const char* third) {
+    return replaced(replaced(replaced(kImuRows, "\n100.00", "\n4294957296"), "\n100.01",
+                             std::string("\n") + second),
+                    "\n100.02", std::string("\n") + third);
+  };
+  imu(rows("10000", "20000"));
+  run(time);
+  const auto increments = all<ImuIncrement>();
+  ASSERT_EQ(increments.size(), 2U);
+  EXPECT_EQ(increments[1].t_end_ns - increments[0].t_end_ns, 10 * kMs);
+  EXPECT_NEAR(increments[0].dt(), 0.02, 1e-6);
+  imu(rows("100000000", "100010000"));  // 100 s: switched on again
+  EXPECT_THAT(error_of<DataError>([&] { run(time); }), HasSubstr("does not come after"));
+}
+
+TEST_F(Dialects, HoursMinutesAndSecondsAsANumber) {
+  const std::string time = "  time: {system: seconds_of_day, date: 2022-03-05}\n";
+  const auto rows = [](const char* first, const char* second, const char* third) {
+    const std::string line = "\n";
+    return replaced(
+        replaced(replaced(kImuRows, "\n100.00", line + first), "\n100.01", line + second),
+        "\n100.02", line + third);
+  };
+  imu(rows("80659.98", "80659.99", "80700.00"));
+  gnss("t,lat,lon,h\n080659.99,47.5,-8.25,400.5\n080700.00,47.5,-8.25,400.5\n");
+  EXPECT_THAT(run(time, time).imu.notices.at(0), HasSubstr("are read as hhmmss"));
+  const int64_t end = *date_ns("2022-03-05") + *time_of_day_ns("08:07:00");
+  EXPECT_EQ(all<ImuIncrement>().at(1).t_end_ns, end);
+  EXPECT_EQ(fix().t_ns, end - 10 * kMs);
+  // A row of 60 seconds or more: they are seconds of the day.
+  gnss("t,lat,lon,h\n80659.99,47.5,-8.25,400.5\n80700,47.5,-8.25,400.5\n80760,47.5,-8.25,400.5\n");
+  imu(rows("80659.98", "80659.99", "80660.00"));
+  EXPECT_TRUE(run(time, time).imu.notices.empty());
+  EXPECT_EQ(fix().t_ns, *date_ns("2022-03-05") + 80'659'990 * kMs);
+  // No day has so many, and nothing jumps.
+  gnss("t,lat,lon,h\n115942.00,47.5,-8.25,400.5\n");
+  EXPECT_THAT(error_of<DataError>([&] { run(time, time); }),
+              HasSubstr("if it is hhmmss, give gnss.time.unit: hhmmss"));
 }
 
 TEST_F(Dialects, DateAndTimeAsText) {

@@ -19,15 +19,26 @@ class TimeMapping : public Configurable {
  public:
   /// gps_week_sow: columns `week` and `time`; gps_sow: seconds of the week `gps_week`, which may
   /// end; gps: seconds since 1980-01-06; unix: seconds since 1970, or as iso8601; iso8601: date and
-  /// time of day in UTC or with their zone, in one column or in `date` and `time`; seconds_of_day:
-  /// of `date`, UTC, or hh:mm:ss, over midnight too; boot: since power-up, which was at second
-  /// `boot_sow` of `gps_week`.
+  /// time of day in UTC or with their zone, in one column, in `date` and `time`, or in parts;
+  /// seconds_of_day: of `date`, UTC, or hh:mm:ss, over midnight too; boot: since power-up, which
+  /// was at second `boot_sow` of `gps_week`; excel, matlab_datenum: days of these programs, UTC.
   std::string system = "gps_week_sow";
-  std::string unit = "s";  ///< of the `time` column: s | ms | us | ns
+  std::string unit = "s";  ///< of the `time` column: s | ms | us | ns | hhmmss
   std::optional<double> gps_week;
-  std::string date;  ///< YYYY-MM-DD
+  std::string date;                 ///< YYYY-MM-DD
+  std::string date_format;          ///< strptime's, of dates in columns; empty: what is certain
+  std::optional<double> add_weeks;  ///< to the weeks of the column, where they are modulo 1024
   std::optional<double> boot_sow;
   double offset_s = 0;
+
+  void fields(ConfigFields& f) override;
+};
+
+/// Which rows of a table count.
+class RowsMapping : public Configurable {
+ public:
+  std::string column;  ///< name in the header, or number from 1
+  std::string value;   ///< that it has in them; empty: all rows
 
   void fields(ConfigFields& f) override;
 };
@@ -40,12 +51,14 @@ class TableMapping : public Configurable {
   std::string decimal = "auto";                ///< auto | point | comma
   bool header = true;                          ///< a line, before the first row, names the columns
   std::map<std::string, std::string> columns;  ///< role -> name in the header, or number from 1
+  RowsMapping rows;
   TimeMapping time;
 
   void fields(ConfigFields& f) override;
 };
 
-/// Roles: time, date, week, gyro_x, gyro_y, gyro_z, accel_x, accel_y, accel_z, wheel_speed.
+/// Roles: time, date, week, nanosecond, year, month, day, hour, minute, second; gyro_x, gyro_y,
+/// gyro_z, accel_x, accel_y, accel_z, wheel_speed.
 class ImuMapping : public TableMapping {
  public:
   /// auto (rad_s; rad beside increments of velocity) | rad_s | deg_s, or of increments rad | deg
