@@ -65,8 +65,12 @@ std::optional<Hemisphere> hemisphere_of(std::string_view text) {
 }
 
 std::optional<CoordinateText> coordinate_of(std::string_view cell) {
+  constexpr std::string_view kMinus = "\xE2\x88\x92";  // U+2212 is no sign of degrees
   CoordinateText found;
-  std::string_view text = without_ends(cell);
+  std::string ascii(cell);
+  const size_t minus = ascii.find(kMinus);
+  if (minus != std::string::npos) ascii.replace(minus, kMinus.size(), "-");
+  std::string_view text = without_ends(ascii);
   found.hemisphere = take_hemisphere(text);
   if (!text.empty() && (text.front() == '-' || text.front() == '+')) {
     found.negative = text.front() == '-';

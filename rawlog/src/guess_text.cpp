@@ -111,8 +111,7 @@ void write_positions(GuessLines& lines, const PositionMapping& mapping) {
     if (mapping.height_m) lines.line("height_m", guess_number(*mapping.height_m));
     if (mapping.columns.count("height") > 0) lines.line("height", mapping.height);
   }
-  const bool usual = mapping.height_unit == "m" || mapping.height_unit == "auto";
-  if (!usual) lines.line("height_unit", mapping.height_unit);
+  if (mapping.height_unit != "auto") lines.line("height_unit", mapping.height_unit);
   if (mapping.geoid_separation_m) {
     lines.line("geoid_separation_m", guess_number(*mapping.geoid_separation_m));
   }

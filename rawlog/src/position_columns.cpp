@@ -114,9 +114,8 @@ double CoordinateColumns::radians(const Row& row) const {
 CoordinateText CoordinateColumns::text(const Row& row) const {
   const std::optional<CoordinateText> found = coordinate_of(row.text(degrees_));
   if (found && (found->count == 1 || (unit_ == "deg" && !minutes_))) return *found;
-  row.number(degrees_);  // fails
-  row.fail(fmt::format("column {} is '{}', no number in {}; correct or remove the row",
-                       degrees_ + 1, row.text(degrees_), unit_));
+  const double value = row.number(degrees_);  // as a table may spell it, or it says what it is
+  return {{std::abs(value)}, 1, std::signbit(value), {}};
 }
 
 /// Minus and S or W say the same.

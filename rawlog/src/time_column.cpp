@@ -139,17 +139,9 @@ int64_t TimeColumn::stamp(const Row& row) {
   return gps_stamp(row, week_column_ ? week(row) : week_, time_ns);
 }
 
-/// Of its column. Receivers that know ten bits of it lose 1024 or 2048.
+/// Of its column. Receivers that know ten bits of it lose 1024 or 2048; a run says so by the date.
 int64_t TimeColumn::week(const Row& row) const {
-  constexpr int64_t kRollover = 1024;
-  const int64_t week = row.integer(*week_column_);
-  if (add_weeks_) return week + *add_weeks_;
-  const bool moved = std::abs(offset_ns_) > kRollover / 2 * kNanosecondsPerWeek;  // told otherwise
-  if (moved || week < 0 || week >= kRollover) return week;
-  row.fail(fmt::format(
-      "GPS week {} is of the years before 1999; if the receiver tells weeks modulo 1024, give "
-      "{}.time.add_weeks: 2048 (since 2019-04-07; 1024 before), else add_weeks: 0",
-      week, section_));
+  return row.integer(*week_column_) + add_weeks_.value_or(0);
 }
 
 int64_t TimeColumn::calendar(const Row& row) const {

@@ -183,7 +183,7 @@ TEST_F(I2nav, GzipIsReadLikeText) {
   const std::string bytes = test::contents(options_.imu);
   options_.out = scratch_.path("second.rawlog");
   scratch_.text_file("imu.txt.gz", bytes.substr(0, bytes.size() - 6));
-  EXPECT_THAT(data_error(), HasSubstr("truncated or damaged after line"));
+  EXPECT_THAT(data_error(), HasSubstr("is cut off behind this line"));
 }
 
 TEST_F(I2nav, BadRowsStopWithFileAndLine) {
