@@ -240,7 +240,7 @@ PosHeader first_header(const std::string& path, bool origin) {
 }
 
 /// Midnight of a date yyyy/mm/dd.
-int64_t date_ns(const Row& row) {
+int64_t pos_date_ns(const Row& row) {
   const std::string date(row.text(0));
   const std::optional<int64_t> midnight = midnight_ns(date, "%Y/%m/%d");
   if (!midnight) row.fail(fmt::format("'{}' is no date; correct or remove the row", date));
@@ -389,7 +389,7 @@ class PosReader : public rawlog::RecordReader {
     const bool date = row.text(0).find('/') != std::string_view::npos;
     // Week and seconds, like the date, are of the clock that the header names.
     const int64_t week = date ? 0 : row.integer(0);
-    const int64_t tow_ns = offset_ns_ + (date ? date_ns(row) + clock_time_ns(row) - kGpsEpochNs
+    const int64_t tow_ns = offset_ns_ + (date ? pos_date_ns(row) + clock_time_ns(row) - kGpsEpochNs
                                               : row.scaled(1, kNanosecondDecimals));
     if (!header_.utc) return gps_stamp(row, week, tow_ns);
     const GpsTime clock = checked_gps_time(row, week, tow_ns);

@@ -20,10 +20,10 @@ bool begins_hex(std::string_view cell) {
 }
 
 bool is_hex_digit(char c) { return std::isxdigit(static_cast<unsigned char>(c)) != 0; }
-bool is_digit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
+bool is_count_digit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
 
 bool are_digits(std::string_view cell) {
-  return !cell.empty() && std::all_of(cell.begin(), cell.end(), is_digit);
+  return !cell.empty() && std::all_of(cell.begin(), cell.end(), is_count_digit);
 }
 
 double signed16(double value) { return value < kHalf ? value : value - kWhole; }

@@ -17,7 +17,7 @@ namespace {
 
 using Separator = TextTable::Separator;
 using Names = std::vector<std::string>;
-using Fields = std::vector<std::string_view>;
+using CellViews = std::vector<std::string_view>;
 
 constexpr size_t kMostLinesBefore = 1000;  ///< the header
 constexpr size_t kFirstRows = 100;         ///< that are looked at
@@ -90,8 +90,9 @@ struct Header {
 };
 
 /// Rows behind so many lines, cut, as views of the preview.
-std::vector<Fields> first_rows(TextTable& table, size_t behind, Separator separator, size_t most) {
-  std::vector<Fields> rows;
+std::vector<CellViews> first_rows(TextTable& table, size_t behind, Separator separator,
+                                  size_t most) {
+  std::vector<CellViews> rows;
   const std::deque<std::string>& lines = table.preview(behind + 2 * most);
   for (size_t i = behind; i < lines.size() && rows.size() < most; ++i) {
     if (!is_empty(lines[i]) && !is_comment(lines[i])) cut(lines[i], separator, rows.emplace_back());
@@ -100,7 +101,7 @@ std::vector<Fields> first_rows(TextTable& table, size_t behind, Separator separa
 }
 
 /// Without empty cells at the end that stand behind `fewest`.
-size_t width_of(const Fields& fields, size_t fewest) {
+size_t width_of(const CellViews& fields, size_t fewest) {
   size_t size = fields.size();
   while (size > fewest && fields[size - 1].empty()) --size;
   return size;
@@ -112,8 +113,8 @@ bool fits_rows(const Header& header, TextTable& table) {
   const auto is_sign = [](const std::string& name) { return name == "," || name == ";"; };
   if (header.names.size() < 2) return false;
   if (std::any_of(header.names.begin(), header.names.end(), is_sign)) return false;
-  const std::vector<Fields> rows = first_rows(table, header.line, header.separator, 2);
-  return std::any_of(rows.begin(), rows.end(), [&](const Fields& row) {
+  const std::vector<CellViews> rows = first_rows(table, header.line, header.separator, 2);
+  return std::any_of(rows.begin(), rows.end(), [&](const CellViews& row) {
     return width_of(row, header.names.size()) == header.names.size();
   });
 }
@@ -185,7 +186,7 @@ const std::string* first_row(TextTable& table) {
 
 /// Whether columns that are used, but for times, have blanks in them if cut so.
 bool has_blanks(const std::string& row, Separator separator, const TableMapping& mapping) {
-  Fields fields;
+  CellViews fields;
   cut(row, separator, fields);
   return std::any_of(mapping.columns.begin(), mapping.columns.end(), [&](const auto& column) {
     const size_t number = column_number(column.second).value_or(0);
@@ -210,11 +211,11 @@ Separator separator_by_row(const TableMapping& mapping, TextTable& table) {
 }
 
 /// Of rows, if all have the same; the first may be one of units. 0: they differ, or are too few.
-size_t common_width(const std::vector<Fields>& rows, size_t of_header) {
+size_t common_width(const std::vector<CellViews>& rows, size_t of_header) {
   constexpr size_t kFewest = 3;
   if (rows.size() < kFewest) return 0;
   const size_t width = width_of(rows.back(), of_header);
-  const bool same = std::all_of(rows.begin() + 1, rows.end(), [&](const Fields& row) {
+  const bool same = std::all_of(rows.begin() + 1, rows.end(), [&](const CellViews& row) {
     return width_of(row, of_header) == width;
   });
   return same ? width : 0;
@@ -236,7 +237,7 @@ void check_names(const TableMapping& mapping, const Header& header, size_t width
 
 /// The two texts of a column, if pairs of rows that share their time have both, in turn.
 std::optional<std::pair<std::string_view, std::string_view>> two_in_turn(
-    const std::vector<Fields>& rows, size_t time, size_t column) {
+    const std::vector<CellViews>& rows, size_t time, size_t column) {
   constexpr size_t kFewest = 20;
   if (rows.size() < kFewest) return std::nullopt;
   const auto text = [&](size_t row, size_t of) {
@@ -272,11 +273,11 @@ Columns::Columns(const TableMapping& mapping, TextTable& table, const std::strin
   header.separator = mapping.header ? Separator::comma : separator_by_row(mapping, table);
   if (mapping.header) header = find_header(mapping, table);
   table.read_as(header.separator, decimal_of(mapping));
-  std::vector<Fields> rows = first_rows(table, header.line, header.separator, kFirstRows);
+  std::vector<CellViews> rows = first_rows(table, header.line, header.separator, kFirstRows);
   if (!mapping.rows.value.empty()) {
     const size_t column =
         find_column("rows.column", mapping.rows.column, header.names, table.path());
-    const auto is_other = [&](const Fields& row) {
+    const auto is_other = [&](const CellViews& row) {
       return column >= row.size() || row[column] != mapping.rows.value;
     };
     rows.erase(std::remove_if(rows.begin(), rows.end(), is_other), rows.end());
@@ -328,9 +329,9 @@ size_t Columns::find_column(const std::string& key, const std::string& name, con
 }
 
 /// Of numbers that have three digits behind their only comma, all of them.
-void Columns::check_commas(const std::vector<Fields>& rows, const std::string& path) const {
+void Columns::check_commas(const std::vector<CellViews>& rows, const std::string& path) const {
   const std::string_view* doubtful = nullptr;
-  for (const Fields& row : rows) {
+  for (const CellViews& row : rows) {
     for (const auto& [role, column] : index_) {
       if (column >= row.size() || !decimal_sign(row[column], ',')) continue;
       if (!has_thousands(row[column], ',')) return;
@@ -345,7 +346,7 @@ void Columns::check_commas(const std::vector<Fields>& rows, const std::string& p
 }
 
 /// Rows that share their time and differ in a column that is not used, in each group alike.
-void Columns::look_for_sensors(const Names& header, const std::vector<Fields>& rows,
+void Columns::look_for_sensors(const Names& header, const std::vector<CellViews>& rows,
                                const std::string& path) {
   const auto time = find("time");
   if (!time || section_ != "imu") return;
