@@ -15,18 +15,12 @@ namespace foucault::rawlog {
 namespace {
 
 using test::error_of;
+using test::packed;
 using test::Scratch;
 using ::testing::AllOf;
 using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::Not;
-
-template <class... T>
-std::string packed(const T&... values) {
-  std::string bytes;
-  (bytes.append(reinterpret_cast<const char*>(&values), sizeof values), ...);
-  return bytes;
-}
 
 std::string padded(std::string text, size_t count) {
   text.resize(count, '\0');
@@ -293,10 +287,8 @@ TEST_F(Dataflash, BytesThatAreNoMessage) {
 /// A flight of ArduCopter 3.1, joeydouglas/dataflash_logs "2014-10-18 21-19-07.bin". Not in the
 /// repository for its size.
 TEST_F(Dataflash, ARealFlight) {
-  const char* set = std::getenv("FOUCAULT_DATA_DIR");
-  const std::string folder =
-      set != nullptr ? set : std::string(FOUCAULT_SOURCE_DIR) + "/../shared/data";
-  options_.log = folder + "/raw_fixtures/ardupilot_copter.bin";
+  options_.log = test::data_dir() + "/raw_fixtures/ardupilot_copter.bin";
+  // Not everywhere: the tests above prove the importer on logs that they write.
   if (!std::filesystem::exists(options_.log)) {
     GTEST_SKIP() << "no " << options_.log << "; set FOUCAULT_DATA_DIR";
   }

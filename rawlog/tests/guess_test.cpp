@@ -418,8 +418,8 @@ TEST(GuessNames, Roles) {
 
 /// What their READMEs say of sensors and clocks.
 TEST(GuessRecordings, AxesUnitsAndClocks) {
-  const char* set = std::getenv("FOUCAULT_DATA_DIR");
-  const std::string data = set != nullptr ? set : FOUCAULT_SOURCE_DIR "/../shared/data";
+  const std::string data = test::data_dir();
+  // Not in the repository for their size and licences; the tests above guess simulated tables.
   if (!std::filesystem::exists(data)) GTEST_SKIP() << "no recordings in " << data;
   struct Recording {
     const char *folder, *imu, *gnss;

@@ -111,6 +111,8 @@ class RawGnss : public ::testing::Test {
 class RawByRtklib : public RawGnss {
  protected:
   void SetUp() override {
+    // The program does without the package, so its tests do; recordings of raw observations are
+    // not in the repository. What is ours (child processes, UBX, .pos) is tested without both.
     if (!is_installed("rnx2rtkp")) GTEST_SKIP() << "no rnx2rtkp; install the package rtklib";
     if (!std::filesystem::exists(options_.rover)) {
       GTEST_SKIP() << "no recordings in " << raw_dir() << "; set FOUCAULT_DATA_DIR";

@@ -5,15 +5,9 @@
 #include <cstdint>
 #include <string>
 
-namespace foucault::test {
+#include "scratch.h"
 
-/// Little endian, one behind the other.
-template <class... T>
-std::string packed(const T&... values) {
-  std::string bytes;
-  (bytes.append(reinterpret_cast<const char*>(&values), sizeof values), ...);
-  return bytes;
-}
+namespace foucault::test {
 
 /// With its length before.
 inline std::string part(const std::string& bytes) {

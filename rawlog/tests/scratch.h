@@ -54,6 +54,14 @@ inline std::string data_dir() {
   return set != nullptr ? set : std::string(FOUCAULT_SOURCE_DIR) + "/../shared/data";
 }
 
+/// Values as they lie in memory, one behind the other.
+template <class... T>
+std::string packed(const T&... values) {
+  std::string bytes;
+  (bytes.append(reinterpret_cast<const char*>(&values), sizeof values), ...);
+  return bytes;
+}
+
 /// A mapping with an IMU that is there from 2000 to 2100, and what `more` says.
 inline std::string imu_at_all_times(const Scratch& scratch, const std::string& more = "") {
   scratch.text_file("imu.csv",

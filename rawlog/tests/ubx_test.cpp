@@ -15,18 +15,12 @@ namespace foucault::rawlog {
 namespace {
 
 using test::error_of;
+using test::packed;
 using test::Scratch;
 using ::testing::AllOf;
 using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
-
-template <class... T>
-std::string packed(const T&... values) {
-  std::string bytes;
-  (bytes.append(reinterpret_cast<const char*>(&values), sizeof values), ...);
-  return bytes;
-}
 
 /// A frame as the interface description has it.
 std::string frame(int message_class, int id, const std::string& payload) {

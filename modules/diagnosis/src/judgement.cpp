@@ -145,8 +145,8 @@ std::string velocity_remedy(const VelocityFacts& v) {
       }
     }
   }
-  return "correct columns, signs and unit of the velocities in the import, or leave them out "
-         "(gnss: {velocity: false})";
+  return "correct columns, signs and unit of the velocities in the import, or latitude and "
+         "longitude; else leave them out (gnss: {velocity: false})";
 }
 
 std::string velocity_text(const VelocityFacts& v) {

@@ -11,7 +11,8 @@ namespace foucault::rawlog {
 /// forward-right-down. Source: ardupilot.org, "Onboard Message Log Messages".
 /// IMU: delta angles of IMT where they were logged without holes, else rates of IMU. Of several
 ///   sensors the first.
-/// GNSS: GPS, fixes of three dimensions of the first receiver that was logged in full, heights above
+/// GNSS: GPS, fixes of three dimensions of the first receiver that was logged in full, heights
+/// above
 ///   the sea. Sigmas: GPA's, else HDOP times 1.7 m, 0.3 m/s (a notice says so).
 /// Time: the fixes' GPS week and milliseconds, to which the clock since boot is fitted, its drift
 ///   included. How long a receiver takes to send a fix is not known here: it is part of the time

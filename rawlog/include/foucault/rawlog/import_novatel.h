@@ -30,7 +30,8 @@ struct NovatelImport : ImportOptions {
   std::optional<Eigen::Vector3d> lever_arm;  ///< IMU to antenna, forward-right-down [m]
   std::optional<std::string> imu_type;       ///< as INSCONFIG calls it, e.g. ADIS16488
   /// Gyroscope [rad] and accelerometer [m/s] of a count, for types that are not known here; of
-  /// corrected logs, which old firmware does not sum up, the samples of the IMU that one stands for.
+  /// corrected logs, which old firmware does not sum up, the samples of the IMU that one stands
+  /// for.
   std::optional<Eigen::Vector2d> imu_scales;
   std::vector<std::string> imu_axes;              ///< as ImuMapping::axes; empty: INSCONFIG's
   std::optional<Eigen::Vector3d> velocity_sigma;  ///< north, east, down [m/s]; the logs have none

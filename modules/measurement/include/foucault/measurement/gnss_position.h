@@ -7,8 +7,8 @@ namespace foucault::measurement {
 
 /// Position of the antenna, p + C l; paper (50). p_a = p + C exp(d) l, hence
 /// d(p_a) = dp - C [l x] d + C dl. Where the time offset s is estimated it is that of s earlier,
-/// p_a - s v_a + s^2/2 a_a, with the acceleration of the stamp: a jerk of 2 m/s^3 is worth 0.3 mm at
-/// 0.1 s, 9 mm at 0.3 s.
+/// p_a - s v_a + s^2/2 a_a, with the acceleration of the stamp: a jerk of 2 m/s^3 is worth 0.3 mm
+/// at 0.1 s, 9 mm at 0.3 s.
 class GnssPosition final : public Observation {
  public:
   explicit GnssPosition(const GnssFix& fix);
