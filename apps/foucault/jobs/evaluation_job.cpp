@@ -195,6 +195,7 @@ std::vector<evaluation::ExperimentRun> experiment_runs(const EvaluationCase& eva
       return std::make_unique<NamedEstimator>(name, make(settings, mounting, sink));
     };
     run.options.reference.keep_s = method.keep_references_s;
+    run.options.layout = settings.calibrate.layout();
     runs.push_back(std::move(run));
   }
   return runs;

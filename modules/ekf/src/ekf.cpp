@@ -31,7 +31,7 @@ void EkfNavigator::propagate(const ImuIncrement& increment) {
   if (integrals_.dt + increment.dt() > cov_interval_) catch_up();
   rates_.add(increment);
   ImuIncrement clean = imu::without_bias(increment, state_.bias);
-  if (state_.slow.size() > 0)
+  if (noise_.layout.has_imu_scale())
     clean = imu::without_scale(clean, noise_.layout.imu_scale(state_.slow));
   state_ = imu::advance(state_, previous_, clean);
   const Eigen::Matrix3d R_n_b = state_.q_n_b.toRotationMatrix();

@@ -64,15 +64,20 @@ void add_slow_blocks(const MotionIntegrals& integrals, const state::Layout& layo
   for (const state::SlowBlock& slow : layout.slow()) {
     state::part(a.diagonal(), slow).setConstant(-integrals.dt / slow.tau);
     if (slow.block.name == state::block::gyro_scale.name)
-      state::columns_of(state::rows_of(a, attitude), slow) = -integrals.attitude_rate;
+      state::columns_of(state::rows_of(a, attitude), slow) = -integrals.by_gyro_scale;
+    if (slow.block.name == state::block::gyro_cross_axis.name)
+      state::columns_of(state::rows_of(a, attitude), slow) << -integrals.by_gyro_cross[0],
+          -integrals.by_gyro_cross[1];
     if (slow.block.name == state::block::accel_scale.name)
-      state::columns_of(state::rows_of(a, velocity), slow) = -integrals.attitude_force;
+      state::columns_of(state::rows_of(a, velocity), slow) = -integrals.by_accel_scale;
+    if (slow.block.name == state::block::accel_cross_axis.name)
+      state::columns_of(state::rows_of(a, velocity), slow) = -integrals.by_accel_cross;
   }
 }
 
 /// Mean dynamics over the interval times its length, with the attitude error psi = C dtheta in n.
-///   psi' = -omega_in x psi - C dbg - C diag(omega) dsg - d(omega_in)
-///   dv'  = -(C f) x psi - C dba - C diag(f) dsa - (2 omega_ie + omega_en) x dv
+///   psi' = -omega_in x psi - C dbg - C dMg omega - d(omega_in)
+///   dv'  = -(C f) x psi - C dba - C dMa f - (2 omega_ie + omega_en) x dv
 ///          + v x (2 d(omega_ie) + d(omega_en)) + dg
 state::StateMatrix mean_dynamics(const MotionIntegrals& integrals, const geodesy::Place& place,
                                  const Eigen::Vector3d& v_n, const ProcessNoise& noise) {
@@ -205,8 +210,12 @@ void MotionIntegrals::add(const ImuIncrement& increment, const Eigen::Matrix3d& 
   dt += step;
   specific_velocity_n += R_n_b * increment.dvel_b;
   attitude += step * R_n_b;
-  attitude_rate += R_n_b * increment.dtheta_b.asDiagonal();
-  attitude_force += R_n_b * increment.dvel_b.asDiagonal();
+  using namespace state::axis_pairs;
+  by_gyro_scale += state::by_elements(R_n_b, increment.dtheta_b, scale);
+  by_accel_scale += state::by_elements(R_n_b, increment.dvel_b, scale);
+  for (std::size_t i = 0; i < gyro_cross.size(); ++i)
+    by_gyro_cross[i] += state::by_elements(R_n_b, increment.dtheta_b, gyro_cross[i]);
+  by_accel_cross += state::by_elements(R_n_b, increment.dvel_b, accel_cross);
   gyro_variance += step * (std::pow(noise.gyro_noise_density, 2) +
                            std::pow(increment.extra_gyro_noise_density, 2));
   accel_variance += step * (std::pow(noise.accel_noise_density, 2) +

@@ -6,9 +6,8 @@
 #include <limits>
 #include <utility>
 
-#include "foucault/core/so3.h"
 #include "foucault/core/time.h"
-#include "foucault/geodesy/local_frame.h"
+#include "foucault/measurement/gnss_position.h"
 #include "foucault/state/blocks.h"
 
 namespace foucault::evaluation {
@@ -95,16 +94,12 @@ OutageDrift outage_drift(const Outage& outage, std::vector<DriftSample> samples,
   return drift;
 }
 
-Geodetic antenna_position(const state::Epoch& epoch, const Eigen::Vector3d& p_b_a) {
-  return geodesy::LocalFrame(epoch.position).to_geodetic(epoch.q_n_b * p_b_a);
-}
-
-Eigen::Matrix3d antenna_covariance(const state::Epoch& epoch, const Eigen::Vector3d& p_b_a) {
-  const Eigen::Matrix3d by_attitude = -epoch.q_n_b.toRotationMatrix() * so3::skew(p_b_a);
-  const Eigen::Matrix3d crossed =
-      by_attitude * part(epoch.covariance, state::block::attitude, state::block::position);
-  return epoch.covariance_of(state::block::position) + crossed + crossed.transpose() +
-         by_attitude * epoch.covariance_of(state::block::attitude) * by_attitude.transpose();
+FixError fix_error(const state::Epoch& epoch, const GnssFix& fix, const state::Layout& layout) {
+  const bool has_slow = epoch.slow.size() == layout.slow_size();
+  const state::Linearized z =
+      measurement::GnssPosition(fix).linearize(epoch, {}, has_slow ? layout : state::Layout());
+  const Eigen::Index size = z.H.cols();
+  return {-z.r, z.H * epoch.covariance.topLeftCorner(size, size) * z.H.transpose()};
 }
 
 DriftCollector::DriftCollector(std::vector<double> marks_s) : marks_s_(std::move(marks_s)) {}
@@ -125,7 +120,8 @@ std::vector<OutageDrift> DriftCollector::complete(int64_t until_ns) const {
   return drifts;
 }
 
-FixTruth::FixTruth(Callback callback) : callback_(std::move(callback)) {}
+FixTruth::FixTruth(Callback callback, const state::Layout& layout)
+    : callback_(std::move(callback)), layout_(layout) {}
 
 void FixTruth::add(const Outage& outage, const GnssFix& fix) { waiting_.push_back({outage, fix}); }
 
@@ -133,8 +129,7 @@ void FixTruth::epoch(const state::Epoch& epoch) {
   while (!waiting_.empty() && waiting_.front().fix.t_ns < epoch.t_ns) waiting_.pop_front();
   if (waiting_.empty() || waiting_.front().fix.t_ns != epoch.t_ns) return;
   const Truth& truth = waiting_.front();
-  const Geodetic antenna = antenna_position(epoch, truth.fix.p_b_a);
-  callback_(truth.outage, truth.fix, epoch, geodesy::ned_offset(truth.fix.antenna, antenna));
+  callback_(truth.outage, truth.fix, epoch, fix_error(epoch, truth.fix, layout_));
   waiting_.pop_front();
 }
 

@@ -5,6 +5,7 @@
 #include <map>
 #include <utility>
 
+#include "foucault/core/time.h"
 #include "foucault/state/blocks.h"
 
 namespace foucault::evaluation {
@@ -25,13 +26,12 @@ class DriftMeter : public state::Sink {
         by_reference_(options.marks_s),
         by_fixes_(options.marks_s),
         withheld_([this](const Outage& outage, const GnssFix& fix, const state::Epoch& epoch,
-                         const Eigen::Vector3d& error_n) {
-          withheld_error(outage, fix, epoch, error_n);
-        }),
-        returned_([this](const Outage&, const GnssFix&, const state::Epoch& epoch,
-                         const Eigen::Vector3d& error_n) {
-          return_by_fixes_.error(epoch.t_ns, error_n);
-        }),
+                         const FixError& error) { withheld_error(outage, fix, epoch, error); },
+                  options.layout),
+        returned_(
+            [this](const Outage&, const GnssFix&, const state::Epoch& epoch,
+                   const FixError& error) { return_by_fixes_.error(epoch.t_ns, error.error_n); },
+            options.layout),
         source_(std::move(source), schedule,
                 [this](const Outage& outage, const GnssFix& fix) { withheld(outage, fix); }),
         comparison_(
@@ -100,17 +100,19 @@ class DriftMeter : public state::Sink {
     return_by_reference_.fix(before, fix);
     if (return_by_fixes_.fix(before, fix)) returned_.add(before, fix);
   }
-  void withheld(const Outage& outage, const GnssFix& fix) {
+  void withheld(const Outage& outage, GnssFix fix) {
+    if (source_.first_fix_ns()) {
+      fix.since_first_s = seconds_between(*source_.first_fix_ns(), fix.t_ns);
+    }
     outages_.insert_or_assign(outage.index, outage);
     distances_m_.try_emplace(outage.index, source_.from_first_fix(fix));
     withheld_.add(outage, fix);
   }
   void withheld_error(const Outage& outage, const GnssFix& fix, const state::Epoch& epoch,
-                      const Eigen::Vector3d& error_n) {
-    if (observer_) observer_->withheld_error(outage, epoch, error_n);
-    const Eigen::Matrix3d covariance =
-        antenna_covariance(epoch, fix.p_b_a) + fix.position_covariance;
-    by_fixes_.add(outage, epoch.t_ns, error_n, normalized_squares(error_n, covariance));
+                      const FixError& error) {
+    if (observer_) observer_->withheld_error(outage, epoch, error.error_n);
+    const Eigen::Matrix3d covariance = error.covariance_n + fix.position_covariance;
+    by_fixes_.add(outage, epoch.t_ns, error.error_n, normalized_squares(error.error_n, covariance));
   }
   void reference_error(const state::Epoch& epoch, const state::ReferenceError& error) {
     if (observer_) observer_->reference_error(epoch, error);

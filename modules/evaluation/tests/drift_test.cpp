@@ -79,35 +79,61 @@ TEST(DriftCollector, LeavesOutIncompleteOutages) {
   EXPECT_EQ(with_hole.complete(after_begin(100)).size(), 0u);
 }
 
-TEST(AntennaPosition, AddsTheLeverArm) {
+GnssFix fix_at_home(const Eigen::Vector3d& p_b_a) {
+  GnssFix fix;
+  fix.p_b_a = p_b_a;
+  fix.antenna = kHome;
+  return fix;
+}
+
+TEST(FixError, IsThatOfTheAntenna) {
   state::Epoch epoch;
   epoch.position = kHome;
   epoch.q_n_b = so3::from_euler({0, 0, kPi / 2});  // forward is east, right is south
-  const Geodetic antenna = antenna_position(epoch, {1, 2, -3});
-  // The horizon's scale at 3 m more height: 2.2 m * 3 m / R.
-  EXPECT_LT((geodesy::ned_offset(kHome, antenna) - Eigen::Vector3d(-2, 1, -3)).norm(), 2e-6);
+  const FixError error = fix_error(epoch, fix_at_home({1, 2, -3}), {});
+  EXPECT_LT((error.error_n - Eigen::Vector3d(-2, 1, -3)).norm(), 1e-8);
 }
 
-TEST(AntennaPosition, CovarianceIsThatOfSmallErrors) {
+/// With the lever arm and the clocks that were found.
+TEST(FixError, IsThatOfTheAntennaAsItWasFound) {
+  state::Layout layout;
+  layout.add(state::block::time_offset, 1).add(state::block::time_drift, 1);
+  layout.add(state::block::lever_arm, 1);
+  state::Epoch epoch;
+  epoch.position = kHome;
+  epoch.velocity_n = {10, 0, 0};
+  epoch.q_n_b = so3::from_euler({0, 0, kPi / 2});
+  epoch.slow = state::SlowVector::Zero(5);
+  epoch.slow << 0.1, 1e-3, 0.5, 0, 0;
+  epoch.covariance = state::StateMatrix::Zero(20, 20);
+  epoch.covariance.diagonal().tail<5>() << 0.01, 0, 0, 0, 0.04;
+  GnssFix fix = fix_at_home({1, 2, -3});
+  fix.since_first_s = 100;  // the fix is 0.2 s old, 2 m south
+  const FixError error = fix_error(epoch, fix, layout);
+  EXPECT_LT((error.error_n - Eigen::Vector3d(-4, 1.5, -3)).norm(), 1e-6);
+  const Eigen::Matrix3d expected = Eigen::Vector3d(1, 0, 0.04).asDiagonal();
+  EXPECT_LT((error.covariance_n - expected).norm(), 1e-9);
+}
+
+TEST(FixError, CovarianceIsThatOfSmallErrors) {
   state::Epoch epoch;
   epoch.position = kHome;
   epoch.q_n_b = so3::from_euler({0.1, -0.2, 0.7});
-  const Eigen::Vector3d p_b_a(1, 2, -3);
+  const GnssFix fix = fix_at_home({1, 2, -3});
   // Columns: errors of one sigma each, correlated; their outer products are the covariance.
   Eigen::Matrix<double, 15, 6> errors = Eigen::Matrix<double, 15, 6>::Random() * 1e-3;
   epoch.covariance = errors * errors.transpose();
+  const FixError estimate = fix_error(epoch, fix, {});
   Eigen::Matrix<double, 3, 6> moved;
   for (int i = 0; i < 6; ++i) {
     state::Epoch other = epoch;
     other.position = geodesy::LocalFrame(kHome).to_geodetic(errors.col(i).segment<3>(0));
     other.q_n_b = epoch.q_n_b * so3::exp(Eigen::Vector3d(errors.col(i).segment<3>(6)));
-    moved.col(i) =
-        geodesy::ned_offset(antenna_position(epoch, p_b_a), antenna_position(other, p_b_a));
+    moved.col(i) = fix_error(other, fix, {}).error_n - estimate.error_n;
   }
   const Eigen::Matrix3d expected = moved * moved.transpose();
-  const Eigen::Matrix3d covariance = antenna_covariance(epoch, p_b_a);
   // Of second order in errors of 2 mrad.
-  EXPECT_LT((covariance - expected).norm(), 4e-3 * expected.norm());
+  EXPECT_LT((estimate.covariance_n - expected).norm(), 4e-3 * expected.norm());
 }
 
 TEST(NormalizedSquares, ArePerDegreeOfFreedom) {
@@ -138,13 +164,13 @@ TEST(SampleNear, IsTheNearestWithinASecond) {
 
 TEST(FixTruth, ComparesAtTheAntenna) {
   std::vector<Eigen::Vector3d> errors;
-  FixTruth truth([&](const Outage& outage, const GnssFix& fix, const state::Epoch& at,
-                     const Eigen::Vector3d& error_n) {
-    EXPECT_EQ(outage.index, kOutage.index);
-    EXPECT_EQ(fix.t_ns, after_begin(2));
-    EXPECT_EQ(at.t_ns, after_begin(2));
-    errors.push_back(error_n);
-  });
+  FixTruth truth(
+      [&](const Outage& outage, const GnssFix& fix, const state::Epoch& at, const FixError& error) {
+        EXPECT_EQ(outage.index, kOutage.index);
+        EXPECT_EQ(fix.t_ns, after_begin(2));
+        EXPECT_EQ(at.t_ns, after_begin(2));
+        errors.push_back(error.error_n);
+      });
   for (int t = 1; t <= 3; ++t) {
     GnssFix fix;
     fix.t_ns = after_begin(t);

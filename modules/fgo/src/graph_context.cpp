@@ -10,8 +10,7 @@ state::Layout as_constants(const state::Layout& layout) {
 
 std::optional<state::ImuScale> scale_of(const state::Layout& layout,
                                         const state::SlowVector& slow) {
-  if (!layout.find(state::block::gyro_scale) && !layout.find(state::block::accel_scale))
-    return std::nullopt;
+  if (!layout.has_imu_scale()) return std::nullopt;
   return layout.imu_scale(slow);
 }
 

@@ -33,8 +33,9 @@ double PreintegrationFactor::turned_by(const state::ImuBias& bias,
                                        const state::SlowVector& slow) const {
   const double by_bias = (bias.gyro - deltas_.bias.gyro).norm() * deltas_.dt;
   if (!deltas_.scale) return by_bias;
-  const Eigen::Vector3d change = layout_.imu_scale(slow).gyro - deltas_.scale->gyro;
-  return by_bias + change.cwiseProduct(so3::log(deltas_.dq)).norm();
+  const Eigen::Matrix3d change =
+      layout_.imu_scale(slow).gyro_matrix() - deltas_.scale->gyro_matrix();
+  return by_bias + (change * so3::log(deltas_.dq)).norm();
 }
 
 state::NodeMatrix PreintegrationFactor::sqrt_information() const {

@@ -35,8 +35,8 @@ ImuIncrement without_bias(const ImuIncrement& increment, const state::ImuBias& b
 
 ImuIncrement without_scale(const ImuIncrement& increment, const state::ImuScale& scale) {
   ImuIncrement compensated = increment;
-  compensated.dtheta_b.array() /= 1 + scale.gyro.array();
-  compensated.dvel_b.array() /= 1 + scale.accel.array();
+  compensated.dtheta_b = scale.gyro_gain() * increment.dtheta_b;
+  compensated.dvel_b = scale.accel_gain() * increment.dvel_b;
   return compensated;
 }
 

@@ -10,6 +10,19 @@ void AidOptions::fields(ConfigFields& f) {
   f.text("gnss_velocity", gnss_velocity, {"on", "off"}, "velocities that the receiver gives");
   f.optional_number("gnss_velocity_sigma_m_s", gnss_velocity_sigma_m_s, kPositive,
                     "sigma of these velocities, each axis, in the place of the receiver's");
+  f.text("zero_velocity", zero_velocity, {"auto", "on", "off"},
+         "no velocity and no rate where the vehicle stands still, as the data show");
+  f.number("zero_velocity_sigma_m_s", zero_velocity_sigma_m_s, kPositive,
+           "sigma of that velocity, each axis");
+  f.text("nonholonomic", nonholonomic, {"auto", "on", "off"},
+         "wheels do not slip sideways; auto: once the recording has shown that it is so");
+  f.optional_number("nonholonomic_sigma_m_s", nonholonomic_sigma_m_s, kPositive,
+                    "sigma of the mean velocity to the right and downward over a second; not set: "
+                    "as the recording shows");
+  f.text("wheel_speed", wheel_speed, {"auto", "on", "off"},
+         "speed of the wheels; auto: once it was found to be that of the vehicle");
+  f.optional_number("wheel_speed_sigma_m_s", wheel_speed_sigma_m_s, kPositive,
+                    "sigma of the mean speed over a second; not set: as the recording shows");
 }
 
 void AidOptions::apply_to(GnssFix& fix) const {

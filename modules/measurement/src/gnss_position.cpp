@@ -7,11 +7,14 @@
 namespace foucault::measurement {
 
 GnssPosition::GnssPosition(const GnssFix& fix)
-    : antenna_(fix.antenna), p_b_a_(fix.p_b_a), covariance_n_(fix.position_covariance) {}
+    : antenna_(fix.antenna),
+      p_b_a_(fix.p_b_a),
+      since_first_(fix.since_first_s),
+      covariance_n_(fix.position_covariance) {}
 
 state::Linearized GnssPosition::linearize(const state::NavState& x, const MeanMotion& mean,
                                           const state::Layout& layout) const {
-  const Antenna antenna(x, mean, layout, p_b_a_);
+  const Antenna antenna(x, mean, layout, p_b_a_, since_first_);
   const double offset = antenna.offset;
   state::Linearized z(3, layout.size());
   z.r = geodesy::displacement_n(x.position, antenna_, geodesy::Place(x.position)) -
@@ -20,9 +23,8 @@ state::Linearized GnssPosition::linearize(const state::NavState& x, const MeanMo
   state::columns_of(z.H, state::block::position).setIdentity();
   state::columns_of(z.H, state::block::attitude) = -antenna.C * so3::skew(antenna.l_b);
   if (antenna.lever_arm) state::columns_of(z.H, *antenna.lever_arm) = antenna.C;
-  if (antenna.time_offset) {
-    state::columns_of(z.H, *antenna.time_offset) =
-        offset * antenna.acceleration_n - antenna.velocity_n;
+  if (antenna.has_time()) {
+    antenna.put_time(offset * antenna.acceleration_n - antenna.velocity_n, z);
     state::columns_of(z.H, state::block::velocity).diagonal().setConstant(-offset);
     antenna.add_swing(-offset, z);
     antenna.add_acceleration(0.5 * offset * offset, z);

@@ -17,6 +17,10 @@
 #include "foucault/geodesy/wgs84.h"
 #include "foucault/measurement/gnss_position.h"
 #include "foucault/measurement/gnss_velocity.h"
+#include "foucault/measurement/nonholonomic.h"
+#include "foucault/measurement/wheel_speed.h"
+#include "foucault/measurement/zero_rate.h"
+#include "foucault/measurement/zero_velocity.h"
 #include "foucault/simulation/scenario.h"
 
 namespace foucault::measurement {
@@ -87,6 +91,7 @@ GnssFix random_fix(const state::NavState& x, std::mt19937& rng) {
   fix.antenna = geodesy::displaced(x.position, x.q_n_b * fix.p_b_a + 0.3 * draw3(rng),
                                    geodesy::Place(x.position));
   fix.velocity_n = x.velocity_n + draw3(rng);
+  fix.since_first_s = between(rng, 0, 10);
   fix.position_covariance = random_covariance(rng);
   fix.velocity_covariance = random_covariance(rng);
   return fix;
@@ -99,6 +104,24 @@ ObservationPtr random_beacon(const state::NavState& x, std::mt19937& rng) {
                                        between(rng, 50, 500));
 }
 
+/// Half a second of turning and accelerating, with biases near those of the state.
+BodyStretch random_stretch(const state::NavState& x, std::mt19937& rng) {
+  BodyStretchBuilder builder;
+  builder.start(0, {x.bias.gyro + 1e-3 * draw3(rng), x.bias.accel + 1e-2 * draw3(rng)});
+  for (int i = 0; i < 10; ++i) {
+    ImuIncrement increment;
+    increment.t_begin_ns = i * 50'000'000;
+    increment.t_end_ns = increment.t_begin_ns + 50'000'000;
+    increment.dtheta_b = 0.05 * draw3(rng);
+    increment.dvel_b = 0.5 * draw3(rng);
+    builder.add(increment);
+    builder.mark();
+  }
+  return *builder.stretch();
+}
+
+Eigen::Quaterniond random_mounting(std::mt19937& rng) { return so3::exp(3 * draw3(rng)); }
+
 /// All there is. A new observation is one line here; EveryObservationHasALine asks for it.
 struct Kind {
   std::string name;
@@ -108,6 +131,19 @@ const std::vector<Kind> kKinds = {
     {"gnss_position", [](const auto& x, auto& rng) { return gnss_position(random_fix(x, rng)); }},
     {"gnss_velocity", [](const auto& x, auto& rng) { return gnss_velocity(random_fix(x, rng)); }},
     {"beacon_range", random_beacon},
+    {"nonholonomic",
+     [](const auto& x, auto& rng) {
+       return std::make_shared<Nonholonomic>(random_stretch(x, rng), random_mounting(rng),
+                                             Eigen::Vector2d(0.1, 0.2));
+     }},
+    {"wheel_speed",
+     [](const auto& x, auto& rng) {
+       return std::make_shared<WheelSpeedMean>(random_stretch(x, rng), random_mounting(rng), 20,
+                                               0.02);
+     }},
+    {"zero_velocity", [](const auto&, auto&) { return std::make_shared<ZeroVelocity>(0.02); }},
+    {"zero_rate",
+     [](const auto&, auto& rng) { return std::make_shared<ZeroRate>(draw3(rng), 1e-4); }},
 };
 
 /// Every slow block there is; a new one is one line here.
@@ -117,7 +153,10 @@ state::Layout every_block() {
       .add(state::block::time_offset, 0.3)
       .add(kTemperature, 5)
       .add(state::block::lever_arm, 1)
-      .add(state::block::gyro_scale, 1e-3);
+      .add(state::block::gyro_scale, 1e-3)
+      .add(state::block::time_drift, 0.1)
+      .add(state::block::mounting, 0.2)
+      .add(state::block::wheel_scale, 0.05);
   return layout;
 }
 
@@ -167,12 +206,11 @@ state::StateVector gradient_by_differences(const Sample& s, const state::Layout&
 /// derivatives of a range of 50 m or more, 3 / 50^2, times h^2 / 6 are 2e-6; and the north and east
 /// that turn with the place, (1 + tan(latitude)) / R times the lever arm and the fix's error, which
 /// H leaves out.
-/// All others, steps h of 1e-4: third derivatives of what turns, at most 3 * the swing of 2 m at
-/// 3 * sqrt(3) + 0.2 rad/s, with scale factors of 10 %, times h^2 / 6, are 6e-8; rounding of 500 m
-/// or 250 m/s, 1e-13 over the step, is less.
+/// All others, steps h of 1e-4: third derivatives of what turns, 250 m/s, times h^2 / 6,
+/// are 4.2e-7; rounding of 500 m or 250 m/s, 1e-13 over the step, is less.
 state::StateVector tolerance(const Sample& s, const state::Layout& layout) {
   const double turning = (1 + std::tan(std::abs(s.x.position.latitude))) / kEarthRadius;
-  state::StateVector tolerance = state::StateVector::Constant(layout.size(), 1e-7);
+  state::StateVector tolerance = state::StateVector::Constant(layout.size(), 5e-7);
   state::part(tolerance, state::block::position).setConstant(3e-6 + (kMostLever + 1) * turning);
   return tolerance;
 }
@@ -203,15 +241,20 @@ TEST_P(Observations, JacobianIsThatOfDifferences) {
 /// Blocks elsewhere, or not at all.
 TEST_P(Observations, JacobianFollowsTheLayout) {
   std::mt19937 rng{43};
-  std::vector<state::Layout> layouts(6);
+  std::vector<state::Layout> layouts(8);
+  layouts[7].add(state::block::time_drift, 1);
   layouts[1].add(state::block::gyro_scale, 1).add(kTemperature, 1);
   layouts[2].add(kTemperature, 1);
   layouts[3]
       .add(state::Block{"unknown", 4, "1"}, 1)
       .add(state::block::gyro_scale, 1)
       .add(state::block::accel_scale, 1);
-  layouts[4].add(state::block::time_offset, 1);
+  layouts[4].add(state::block::time_offset, 1).add(state::block::time_drift, 1);
   layouts[5].add(state::block::lever_arm, 1).add(state::block::accel_scale, 1);
+  layouts[6]
+      .add(state::block::wheel_scale, 1)
+      .add(state::block::wheel_lever_arm, 1)
+      .add(state::block::mounting, 1);
   for (const state::Layout& layout : layouts) {
     for (int i = 0; i < 20; ++i)
       EXPECT_LE(worst_of(random_sample(GetParam(), layout, rng), layout), 1) << layout.size();
@@ -352,7 +395,8 @@ AtAntenna at(const simulation::Motion& m, const state::Layout& layout) {
   a.x.q_n_b = m.q_n_v;
   a.x.bias.gyro = Eigen::Vector3d(0.02, -0.01, 0.03);
   a.x.slow = state::SlowVector::LinSpaced(layout.slow_size(), -0.03, 0.04);
-  for (const state::Block& of_antenna : {state::block::lever_arm, state::block::time_offset}) {
+  for (const state::Block& of_antenna :
+       {state::block::lever_arm, state::block::time_offset, state::block::time_drift}) {
     if (const state::SlowBlock* slow = layout.find(of_antenna)) {
       a.x.slow.segment(slow->index, slow->block.size).setZero();
     }

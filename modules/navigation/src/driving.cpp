@@ -7,7 +7,6 @@
 #include "foucault/core/error.h"
 #include "foucault/core/position.h"
 #include "foucault/core/time.h"
-#include "foucault/geodesy/local_frame.h"
 #include "foucault/imu/increments.h"
 #include "foucault/measurement/gnss_position.h"
 #include "foucault/measurement/gnss_velocity.h"
@@ -22,10 +21,6 @@ using state::FixVerdict;
 namespace {
 
 constexpr double kRecentRatesMemory = 0.3;  // [s]: beyond vibration, well within a manoeuvre
-
-Geodetic antenna_of(const state::Epoch& epoch, const Eigen::Vector3d& p_b_a) {
-  return geodesy::LocalFrame(epoch.position).to_geodetic(epoch.q_n_b * p_b_a);
-}
 
 /// Made up to bridge a hole: no rates that were measured.
 bool is_made_up(const ImuIncrement& increment) { return increment.extra_gyro_noise_density > 0; }
@@ -47,6 +42,7 @@ Driving::Driving(std::unique_ptr<measurement::Navigator> navigator,
       sink_(sink),
       stops_(options.node_interval_s),
       gate_(options.gnss),
+      aiding_(options, sink),
       velocity_judge_(options.gnss),
       recent_{kRecentRatesMemory} {
   if (sink.wants_predictions()) probe_.emplace();
@@ -58,6 +54,7 @@ void Driving::start(const state::Epoch& initial) {
   gate_.start(time_ns_);
   velocity_judge_.start(time_ns_);
   if (probe_) probe_->restart();
+  aiding_.start(time_ns_, initial.bias);
   navigator_->start(initial);
   emit_epoch();
 }
@@ -69,6 +66,8 @@ Interruption Driving::take(const Measurement& measurement) {
     take_event(*fix);
   } else if (const auto* request = std::get_if<EpochRequest>(&measurement)) {
     take_event(*request);
+  } else if (const auto* speed = std::get_if<WheelSpeed>(&measurement)) {
+    aiding_.add(*speed);
   }
   return interruption();
 }
@@ -93,6 +92,7 @@ Interruption Driving::interruption() {
 void Driving::doubt_state(int64_t t_ns) {
   gate_.doubt_state(t_ns);
   velocity_judge_.doubt_state(t_ns);
+  aiding_.doubt_state(t_ns);
 }
 
 imu::RecentRates Driving::take_recent_rates(const ImuIncrement& next) {
@@ -148,11 +148,19 @@ bool Driving::advance(const ImuIncrement& increment) {
 
 void Driving::propagate(const ImuIncrement& increment) {
   navigator_->propagate(increment);
+  aiding_.propagate(increment, is_made_up(increment));
   if (probe_) probe_->propagate(increment);
   time_ns_ = increment.t_end_ns;
 }
 
-/// Everything due now: fixes first, then a hold if still needed, then one epoch.
+/// A fix was used a moment ago.
+bool Driving::is_held() const {
+  constexpr double kHeld = 1.5;  // [s]
+  const std::optional<int64_t> fix_ns = stops_.last_fix_ns();
+  return fix_ns && seconds_between(*fix_ns, time_ns_) < kHeld;
+}
+
+/// Everything due now: fixes first, then a hold if still needed, then aids, then one epoch.
 void Driving::stop() {
   while (const std::optional<StopEvent> event = stops_.take_due(time_ns_)) {
     if (const auto* fix = std::get_if<GnssFix>(&*event)) meet_fix(*fix);
@@ -162,6 +170,7 @@ void Driving::stop() {
     navigator_->hold();
     stops_.held(time_ns_);
   }
+  if (aiding_.is_due(time_ns_)) aiding_.stop(time_ns_, is_held(), *navigator_);
   emit_epoch();
 }
 
@@ -231,9 +240,7 @@ void Driving::use(const GnssFix& fix, FixResult& result) {
   navigator_->update(measurement::gnss_position(fix));
   fix_used();
   if (fix.velocity_n && options_.aids.uses_gnss_velocity()) use_velocity(fix);
-  const state::Epoch epoch = navigator_->epoch();
-  const geodesy::LocalFrame estimate(antenna_of(epoch, fix.p_b_a));
-  result.postfit_n = estimate.to_local(fix.antenna);
+  result.postfit_n = navigator_->innovation(measurement::GnssPosition(fix)).value;
 }
 
 void Driving::use_velocity(const GnssFix& fix) {

@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "aiding.h"
 #include "fix_gate.h"
 #include "foucault/core/measurement.h"
 #include "foucault/diagnosis/fix_judge.h"
@@ -70,6 +71,7 @@ class Driving {
   std::optional<HoleMet> take_increment(const ImuIncrement& increment);
   bool advance(const ImuIncrement& increment);
   void propagate(const ImuIncrement& increment);
+  bool is_held() const;
   void stop();
 
   void meet_fix(const GnssFix& fix);
@@ -91,6 +93,7 @@ class Driving {
   int64_t time_ns_ = 0;
   StopQueue stops_;
   FixGate gate_;
+  Aiding aiding_;
   diagnosis::FixJudge velocity_judge_;
   std::optional<FixInDoubt> in_doubt_;
   imu::RecentRates recent_;               ///< before now, for bridging a hole

@@ -51,6 +51,8 @@ Admitted Intake::admit_increment(const ImuIncrement& increment) {
 
 Admitted Intake::admit_fix(GnssFix fix) {
   options_.aids.apply_to(fix);
+  if (!first_fix_ns_) first_fix_ns_ = fix.t_ns;
+  fix.since_first_s = seconds_between(*first_fix_ns_, fix.t_ns);
   const FixClass fix_class = classify(fix);
   count(fix_class, fix);
   switch (fix_class) {

@@ -76,6 +76,7 @@ class Intake {
   int64_t increments_ = 0;
   std::optional<double> first_elsewhen_s_;  ///< by how much the first of these is off
   std::optional<GnssFix> last_fix_;
+  std::optional<int64_t> first_fix_ns_;
 };
 
 }  // namespace foucault::navigation

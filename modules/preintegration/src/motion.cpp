@@ -30,9 +30,17 @@ Corrected correct(const MotionDeltas& pre, const state::ImuBias& bias,
   if (pre.scale) {
     const Vector3d sg = scale.gyro - pre.scale->gyro;
     const Vector3d sa = scale.accel - pre.scale->accel;
-    dp += pre.by_gyro_scale.dp * sg + pre.by_accel_scale.dp * sa;
-    dv += pre.by_gyro_scale.dv * sg + pre.by_accel_scale.dv * sa;
+    const Eigen::Matrix<double, 6, 1> cg = scale.gyro_cross - pre.scale->gyro_cross;
+    const Vector3d ca = scale.accel_cross - pre.scale->accel_cross;
+    dp += pre.by_gyro_scale.dp * sg + pre.by_accel_scale.dp * sa + pre.by_accel_cross.dp * ca;
+    dv += pre.by_gyro_scale.dv * sg + pre.by_accel_scale.dv * sa + pre.by_accel_cross.dv * ca;
     shift += pre.by_gyro_scale.dq * sg;
+    for (std::size_t i = 0; i < pre.by_gyro_cross.size(); ++i) {
+      const Vector3d c = cg.segment<3>(3 * static_cast<Eigen::Index>(i));
+      dp += pre.by_gyro_cross[i].dp * c;
+      dv += pre.by_gyro_cross[i].dv * c;
+      shift += pre.by_gyro_cross[i].dq * c;
+    }
   }
   return {dp, dv, pre.dq * so3::exp(shift), shift};
 }
@@ -208,6 +216,9 @@ MotionResidual motion_residual(const state::NodeState& x0, const state::NodeStat
   if (pre.scale) {
     m.J_gyro_scale = jacobian_of(pre.by_gyro_scale, r_q);
     m.J_accel_scale = jacobian_of(pre.by_accel_scale, r_q);
+    for (std::size_t i = 0; i < m.J_gyro_cross.size(); ++i)
+      m.J_gyro_cross[i] = jacobian_of(pre.by_gyro_cross[i], r_q);
+    m.J_accel_cross = jacobian_of(pre.by_accel_cross, r_q);
   }
   return m;
 }
@@ -224,6 +235,10 @@ state::NodeBySlow slow_jacobian(const MotionResidual& m, const state::Layout& la
     J.middleCols<3>(gyro->index) = m.J_gyro_scale;
   if (const state::SlowBlock* accel = layout.find(accel_scale))
     J.middleCols<3>(accel->index) = m.J_accel_scale;
+  if (const state::SlowBlock* gyro = layout.find(gyro_cross_axis))
+    J.middleCols<6>(gyro->index) << m.J_gyro_cross[0], m.J_gyro_cross[1];
+  if (const state::SlowBlock* accel = layout.find(accel_cross_axis))
+    J.middleCols<3>(accel->index) = m.J_accel_cross;
   return J;
 }
 

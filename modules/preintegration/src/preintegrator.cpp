@@ -59,10 +59,6 @@ inline void step_of_accel(const Matrix3d& D, double dt, DeltaJacobian& J) {
   J.dv -= D;
 }
 
-void times_columns(const Vector3d& gain, DeltaJacobian& J) {
-  for (Matrix3d* M : {&J.dp, &J.dv, &J.dq}) *M = *M * gain.asDiagonal();
-}
-
 }  // namespace
 
 Preintegrator::Blocks::Blocks() {
@@ -80,16 +76,16 @@ Preintegrator::Preintegrator(const imu::ImuNoise& noise, const state::ImuBias& b
   m_.bias = bias;
   m_.scale = scale;
   if (!scale) return;
-  gain_.gyro = (1 + scale->gyro.array()).inverse();
-  gain_.accel = (1 + scale->accel.array()).inverse();
+  gyro_gain_ = scale->gyro_gain();
+  accel_gain_ = scale->accel_gain();
 }
 
 inline Preintegrator::Motion Preintegrator::corrected(const ImuIncrement& increment) const {
   const double dt = increment.dt();
   Motion motion{increment.dtheta_b - m_.bias.gyro * dt, increment.dvel_b - m_.bias.accel * dt};
   if (m_.scale) {
-    motion.dtheta.array() *= gain_.gyro.array();
-    motion.dvel.array() *= gain_.accel.array();
+    motion.dtheta = gyro_gain_ * motion.dtheta;
+    motion.dvel = accel_gain_ * motion.dvel;
   }
   return motion;
 }
@@ -133,14 +129,27 @@ void Preintegrator::propagate_errors(const ImuIncrement& increment, const Motion
 
 void Preintegrator::propagate_jacobians(const Motion& motion, const Matrix3d& D, const Vector3d& y,
                                         double dt) {
+  if (m_.scale) return propagate_scale_jacobians(motion, D, y, dt);
   step_of_gyro((0.5 * dt) * C_ - m_.by_gyro_bias.dq, D, y, dt, m_.by_gyro_bias);
   step_of_accel(D, dt, m_.by_accel_bias);
-  if (!m_.scale) return;
-  const Vector3d rate = motion.dtheta / dt;
-  const Vector3d force = motion.dvel / dt;
-  step_of_gyro(C_ * (0.5 * motion.dtheta).asDiagonal() - m_.by_gyro_scale.dq, D * rate.asDiagonal(),
-               y, dt, m_.by_gyro_scale);
-  step_of_accel(D * force.asDiagonal(), dt, m_.by_accel_scale);
+}
+
+/// With those by the biases.
+void Preintegrator::propagate_scale_jacobians(const Motion& motion, const Matrix3d& D,
+                                              const Vector3d& y, double dt) {
+  using namespace state::axis_pairs;
+  const Matrix3d C_gyro = C_ * gyro_gain_, D_gyro = D * gyro_gain_, D_accel = D * accel_gain_;
+  step_of_gyro((0.5 * dt) * C_gyro - m_.by_gyro_bias.dq, D_gyro, y, dt, m_.by_gyro_bias);
+  step_of_accel(D_accel, dt, m_.by_accel_bias);
+  const Vector3d half = 0.5 * motion.dtheta, rate = motion.dtheta / dt, force = motion.dvel / dt;
+  const auto by_gyro = [&](const state::AxisPairs& pairs, DeltaJacobian& J) {
+    step_of_gyro(state::by_elements(C_gyro, half, pairs) - J.dq,
+                 state::by_elements(D_gyro, rate, pairs), y, dt, J);
+  };
+  by_gyro(scale, m_.by_gyro_scale);
+  for (std::size_t i = 0; i < gyro_cross.size(); ++i) by_gyro(gyro_cross[i], m_.by_gyro_cross[i]);
+  step_of_accel(state::by_elements(D_accel, force, scale), dt, m_.by_accel_scale);
+  step_of_accel(state::by_elements(D_accel, force, accel_cross), dt, m_.by_accel_cross);
 }
 
 /// Half of a sample's noise, W h.
@@ -224,14 +233,14 @@ Preintegration Preintegrator::result() const {
   return out;
 }
 
-/// eps = C dtheta, and the true increments are the measured ones times the gain.
+/// eps = C dtheta.
 void Preintegrator::put_jacobians(MotionDeltas& out) const {
   const Matrix3d Ct = C_.transpose();
   out.by_gyro_bias.dq = Ct * m_.by_gyro_bias.dq;
   if (!m_.scale) return;
   out.by_gyro_scale.dq = Ct * m_.by_gyro_scale.dq;
-  for (DeltaJacobian* J : {&out.by_gyro_bias, &out.by_gyro_scale}) times_columns(gain_.gyro, *J);
-  for (DeltaJacobian* J : {&out.by_accel_bias, &out.by_accel_scale}) times_columns(gain_.accel, *J);
+  for (std::size_t i = 0; i < out.by_gyro_cross.size(); ++i)
+    out.by_gyro_cross[i].dq = Ct * m_.by_gyro_cross[i].dq;
 }
 
 void Preintegrator::put_covariance(state::NodeMatrix& S) const {

@@ -48,6 +48,7 @@ struct GnssFix {
   FixQuality quality = FixQuality::unknown;
   Eigen::Vector3d p_b_a = Eigen::Vector3d::Zero();  ///< lever arm, IMU to antenna, in b [m]
   bool lever_arm_known = true;                      ///< else p_b_a is zero for want of a better one
+  double since_first_s = 0;                         ///< for a clock that drifts
   FixDetails details;
 };
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 
 #include "foucault/imu/imu_noise.h"
 #include "foucault/imu/strapdown.h"
@@ -23,10 +24,13 @@ struct MotionIntegrals {
   double dt = 0;                                                  ///< [s]
   Eigen::Vector3d specific_velocity_n = Eigen::Vector3d::Zero();  ///< of C f [m/s]
   Eigen::Matrix3d attitude = Eigen::Matrix3d::Zero();             ///< of C = R_n_b [s]
-  Eigen::Matrix3d attitude_rate = Eigen::Matrix3d::Zero();        ///< of C diag(omega_ib_b) [rad]
-  Eigen::Matrix3d attitude_force = Eigen::Matrix3d::Zero();       ///< of C diag(f_b) [m/s]
-  double gyro_variance = 0;                                       ///< of white noise power [rad^2]
-  double accel_variance = 0;                                      ///< [m^2/s^2]
+  /// Of C M omega_ib_b [rad] and of C M f_b [m/s] by the elements of M, state::ImuScale.
+  Eigen::Matrix3d by_gyro_scale = Eigen::Matrix3d::Zero();
+  std::array<Eigen::Matrix3d, 2> by_gyro_cross{Eigen::Matrix3d::Zero(), Eigen::Matrix3d::Zero()};
+  Eigen::Matrix3d by_accel_scale = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d by_accel_cross = Eigen::Matrix3d::Zero();
+  double gyro_variance = 0;   ///< of white noise power [rad^2]
+  double accel_variance = 0;  ///< [m^2/s^2]
 
   /// Adds a compensated increment over which R_n_b changes as given.
   void add(const ImuIncrement& increment, const Eigen::Matrix3d& R_n_b_begin,

@@ -12,6 +12,7 @@
 
 #include "foucault/evaluation/outage.h"
 #include "foucault/evaluation/return_error.h"
+#include "foucault/state/layout.h"
 #include "foucault/state/result.h"
 
 /// Drift: what the estimate errs by during an outage.
@@ -71,9 +72,13 @@ OutageDrift outage_drift(const Outage& outage, std::vector<DriftSample> samples,
 /// Not interpolated: an error between two has another covariance.
 const DriftSample* sample_near(const std::vector<DriftSample>& samples, double since_begin_s);
 
-/// Position of the antenna by an epoch, and its covariance in NED [m^2].
-Geodetic antenna_position(const state::Epoch& epoch, const Eigen::Vector3d& p_b_a);
-Eigen::Matrix3d antenna_covariance(const state::Epoch& epoch, const Eigen::Vector3d& p_b_a);
+/// An epoch against a fix of its stamp: the antenna as the estimate has it, lever arm and clocks
+/// among its slow blocks included, minus the fix, NED; covariance of the former.
+struct FixError {
+  Eigen::Vector3d error_n = Eigen::Vector3d::Zero();       ///< [m]
+  Eigen::Matrix3d covariance_n = Eigen::Matrix3d::Zero();  ///< [m^2]
+};
+FixError fix_error(const state::Epoch& epoch, const GnssFix& fix, const state::Layout& layout);
 
 /// Collects the errors during outages.
 class DriftCollector {
@@ -105,9 +110,10 @@ class DriftCollector {
 class FixTruth {
  public:
   using Callback = std::function<void(const Outage&, const GnssFix&, const state::Epoch&,
-                                      const Eigen::Vector3d& error_n)>;
+                                      const FixError& error)>;
 
-  explicit FixTruth(Callback callback);
+  /// layout: of the epochs.
+  explicit FixTruth(Callback callback, const state::Layout& layout = {});
 
   /// `outage`: the one that the fix belongs to.
   void add(const Outage& outage, const GnssFix& fix);
@@ -120,6 +126,7 @@ class FixTruth {
   };
 
   Callback callback_;
+  state::Layout layout_;
   std::deque<Truth> waiting_;
 };
 

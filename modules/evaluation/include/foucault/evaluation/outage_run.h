@@ -8,6 +8,7 @@
 #include "foucault/evaluation/outage.h"
 #include "foucault/evaluation/reference_error.h"
 #include "foucault/state/interfaces.h"
+#include "foucault/state/layout.h"
 
 namespace foucault::evaluation {
 
@@ -30,6 +31,7 @@ struct OutageRunOptions {
   std::vector<double> marks_s = default_drift_marks_s();
   /// For an estimator that gives out at the end (a smoother), keep_s must span the recording.
   ReferenceComparisonOptions reference;
+  state::Layout layout;  ///< of the epochs
 };
 
 /// Makes an estimator that gives out to the sink.

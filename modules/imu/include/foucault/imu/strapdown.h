@@ -16,7 +16,7 @@ namespace foucault::imu {
 
 /// The increment without the biases' share.
 ImuIncrement without_bias(const ImuIncrement& increment, const state::ImuBias& bias);
-/// What is free of biases without the share of the scale factors.
+/// What is free of biases without the share of scale factors and cross-axis terms.
 ImuIncrement without_scale(const ImuIncrement& increment, const state::ImuScale& scale);
 
 /// The state at the end of an increment which begins at state.t_ns.

@@ -20,6 +20,7 @@ class GnssPosition final : public Observation {
  private:
   Geodetic antenna_;
   Eigen::Vector3d p_b_a_;
+  double since_first_;
   Eigen::Matrix3d covariance_n_;
 };
 

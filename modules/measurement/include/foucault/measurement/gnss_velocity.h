@@ -20,6 +20,7 @@ class GnssVelocity final : public Observation {
  private:
   Eigen::Vector3d velocity_n_;
   Eigen::Vector3d p_b_a_;
+  double since_first_;
   Eigen::Matrix3d covariance_n_;
 };
 

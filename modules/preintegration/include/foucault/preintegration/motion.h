@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <array>
 
 #include "foucault/preintegration/earth.h"
 #include "foucault/preintegration/preintegrator.h"
@@ -41,8 +42,11 @@ struct MotionResidual {
   state::NodeVector r;
   state::NodeMatrix J_x0;
   state::NodeMatrix J_x1;
-  NodeByAxis J_gyro_scale = NodeByAxis::Zero();  ///< both zero if the preintegration has no scale
+  /// Zero if the preintegration has no scale.
+  NodeByAxis J_gyro_scale = NodeByAxis::Zero();
   NodeByAxis J_accel_scale = NodeByAxis::Zero();
+  std::array<NodeByAxis, 2> J_gyro_cross{NodeByAxis::Zero(), NodeByAxis::Zero()};
+  NodeByAxis J_accel_cross = NodeByAxis::Zero();
 };
 /// Here and below: `scale` counts if the preintegration has one.
 MotionResidual motion_residual(const state::NodeState& x0, const state::NodeState& x1,

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <array>
 #include <optional>
 
 #include "foucault/core/measurement.h"
@@ -48,9 +49,11 @@ struct MotionDeltas {
 
   DeltaJacobian by_gyro_bias;
   DeltaJacobian by_accel_bias;  ///< dq does not change
-  /// Both zero without `scale`.
+  /// Zero without `scale`.
   DeltaJacobian by_gyro_scale;
-  DeltaJacobian by_accel_scale;  ///< dq does not change
+  DeltaJacobian by_accel_scale;                ///< dq does not change
+  std::array<DeltaJacobian, 2> by_gyro_cross;  ///< three of the block each
+  DeltaJacobian by_accel_cross;                ///< dq does not change
 };
 
 struct Preintegration : MotionDeltas {
@@ -66,11 +69,10 @@ struct Preintegration : MotionDeltas {
 /// Noise by the trapezoid rule, as (42); biases are the processes of MarkovBias, and a constant one
 /// wanders by 1e-5 of its sigma in an hour.
 ///
-/// Scale factors: the true increment is (measured - bias dt) / (1 + scale), which a scale changes
-/// as a bias of rate / (1 + scale) does. So their Jacobians take the steps of those by the biases,
-/// with C diag(true increment) in the place of C dt; and the common 1 / (1 + scale), constant over
-/// the interval, is a factor of the columns that result() applies to both. The covariance leaves it
-/// out: noise is not known to 1000 ppm.
+/// Scale factors and cross-axis terms: the true increment is G (measured - bias dt), G = (I +
+/// M)^-1, which an element ij of M changes by -G e_i times the true component j, as a bias does by
+/// -G dt. So their Jacobians take the steps of those by the biases with C G in the place of C. The
+/// covariance leaves G out: noise is not known to 1000 ppm.
 class Preintegrator {
  public:
   /// `previous`: the increment before the first, for coning and sculling. `scale`: at which to
@@ -105,6 +107,8 @@ class Preintegrator {
                         const Eigen::Matrix3d& C_next, const Eigen::Vector3d& y);
   void propagate_jacobians(const Motion& motion, const Eigen::Matrix3d& D, const Eigen::Vector3d& y,
                            double dt);
+  void propagate_scale_jacobians(const Motion& motion, const Eigen::Matrix3d& D,
+                                 const Eigen::Vector3d& y, double dt);
   void propagate_covariance(const ImuIncrement& increment, const Eigen::Matrix3d& D,
                             const Eigen::Vector3d& y, double dt);
 
@@ -124,8 +128,10 @@ class Preintegrator {
   imu::ImuNoise noise_;
   double gyro_bias_power_, accel_bias_power_;
   std::optional<ImuIncrement> previous_;
-  MotionDeltas m_;  ///< until result() its Jacobians have eps for dq, and no gain in the columns
-  state::ImuScale gain_{Eigen::Vector3d::Ones(), Eigen::Vector3d::Ones()};  ///< 1 / (1 + scale)
+  MotionDeltas m_;  ///< until result() its Jacobians have eps for dq
+  /// G of both sensors.
+  Eigen::Matrix3d gyro_gain_ = Eigen::Matrix3d::Identity();
+  Eigen::Matrix3d accel_gain_ = Eigen::Matrix3d::Identity();
   Eigen::Matrix3d C_ = Eigen::Matrix3d::Identity();
   Blocks cov_;
   double bias_decay_dt_ = -1;  ///< sample length for which the decays were computed

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <array>
 #include <string_view>
 #include <type_traits>
 
@@ -24,7 +25,7 @@ struct NodeBlock : Block {
 
 constexpr int kMotionSize = 9;  ///< rows of position, velocity and attitude
 constexpr int kNodeSize = 15;
-constexpr int kMostSlow = 17;                     ///< rows of slow blocks
+constexpr int kMostSlow = 26;                     ///< rows of slow blocks
 constexpr int kMostSize = kNodeSize + kMostSlow;  ///< rows of a state
 
 /// Rows of a state with so many rows of slow blocks.
@@ -41,11 +42,25 @@ inline constexpr NodeBlock accel_bias{{"accel_bias", 3, "m/s^2"}, 12};
 /// measured = (1 + scale) * true + bias, an axis of b each.
 inline constexpr Block gyro_scale{"gyro_scale", 3, "1"};
 inline constexpr Block accel_scale{"accel_scale", 3, "1"};
+/// What of one true axis shows on another, measured = (I + M) true + bias: M's xy, yz, zx, xz, yx,
+/// zy of the gyroscopes; xy, yz, xz of the accelerometers, whose x and y so define the axes b.
+inline constexpr Block gyro_cross_axis{"gyro_cross_axis", 6, "1"};
+inline constexpr Block accel_cross_axis{"accel_cross_axis", 3, "1"};
 
 /// IMU to antenna, what has to be added to the one that fixes come with; in b.
 inline constexpr Block lever_arm{"lever_arm", 3, "m"};
-/// Fixes are of so much before their stamps, on the clock of the IMU.
+/// Fixes are of so much before their stamps, on the clock of the IMU: offset plus drift times the
+/// time since the first fix.
 inline constexpr Block time_offset{"time_offset", 1, "s"};
+inline constexpr Block time_drift{"time_drift", 1, "1"};
+/// The vehicle's axes are those that the log tells turned by exp(0, pitch, heading): a vector of
+/// the told ones times that matrix is one of the vehicle's. Roll does not show where wheels do not
+/// slip.
+inline constexpr Block mounting{"mounting", 2, "rad"};
+/// Forward speed = (1 + scale) times what the wheels tell.
+inline constexpr Block wheel_scale{"wheel_scale", 1, "1"};
+/// IMU to the point of the vehicle that does not slip sideways; in b.
+inline constexpr Block wheel_lever_arm{"wheel_lever_arm", 3, "m"};
 }  // namespace block
 
 using NodeVector = Eigen::Matrix<double, kNodeSize, 1>;
@@ -132,10 +147,36 @@ struct ImuBias {
   Eigen::Vector3d accel = Eigen::Vector3d::Zero();  ///< [m/s^2], b
 };
 
-/// Errors of an IMU's scales: measured = (1 + scale) * true + bias.
+/// Three elements of a matrix M of scales: row[m], column[m].
+struct AxisPairs {
+  std::array<int, 3> row, column;
+};
+namespace axis_pairs {
+inline constexpr AxisPairs scale{{0, 1, 2}, {0, 1, 2}};
+inline constexpr std::array<AxisPairs, 2> gyro_cross{
+    AxisPairs{{0, 1, 2}, {1, 2, 0}}, AxisPairs{{0, 1, 2}, {2, 0, 1}}};  ///< as the block has them
+inline constexpr AxisPairs accel_cross{{0, 1, 0}, {1, 2, 2}};
+}  // namespace axis_pairs
+
+/// C M v by three elements of M, a column each.
+inline Eigen::Matrix3d by_elements(const Eigen::Matrix3d& C, const Eigen::Vector3d& v,
+                                   const AxisPairs& pairs) {
+  Eigen::Matrix3d out;
+  for (int m = 0; m < 3; ++m) out.col(m) = v[pairs.column[m]] * C.col(pairs.row[m]);
+  return out;
+}
+
+/// Errors of an IMU's scales and axes: measured = (I + M) true + bias.
 struct ImuScale {
-  Eigen::Vector3d gyro = Eigen::Vector3d::Zero();
+  Eigen::Vector3d gyro = Eigen::Vector3d::Zero();  ///< diagonal of M
   Eigen::Vector3d accel = Eigen::Vector3d::Zero();
+  Eigen::Matrix<double, 6, 1> gyro_cross = Eigen::Matrix<double, 6, 1>::Zero();
+  Eigen::Vector3d accel_cross = Eigen::Vector3d::Zero();
+
+  Eigen::Matrix3d gyro_matrix() const;   ///< M
+  Eigen::Matrix3d accel_matrix() const;  ///< M
+  Eigen::Matrix3d gyro_gain() const;     ///< (I + M)^-1
+  Eigen::Matrix3d accel_gain() const;
 };
 
 }  // namespace foucault::state

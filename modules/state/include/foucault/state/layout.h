@@ -48,8 +48,11 @@ class Layout {
   /// The first row of a slow block among the slow ones; none if it is not estimated.
   std::optional<int> slow_index(const Block& block) const;
 
-  /// Scale factors of the IMU among slow blocks that have these values; zero if not estimated.
+  /// Scale factors and cross-axis terms of the IMU among slow blocks that have these values; zero
+  /// where not estimated.
   ImuScale imu_scale(const SlowVector& slow) const;
+  /// Whether any of these is estimated.
+  bool has_imu_scale() const;
 
   /// Covariance of the slow blocks before anything is measured.
   SlowMatrix prior() const;

@@ -1,0 +1,59 @@
+#include "foucault/diagnosis/rest_levels.h"
+
+#include <cmath>
+
+#include "foucault/core/constants.h"
+
+namespace foucault::diagnosis {
+namespace {
+
+constexpr int kLeastSamples = 8;
+constexpr std::size_t kMemory = 600;  // stretches: ten minutes
+/// Standard deviations of a hundred samples are known to 7 %, a factor of 0.07 in the logarithm.
+constexpr double kSmoothing = 0.1;
+/// Levels lie anywhere over three decades before anything is known of them.
+constexpr double kBroad = 7;
+
+double density(const std::deque<ShakeLevel>& learned, const ShakeLevel& level) {
+  double sum = 1 / (kBroad * kBroad);
+  for (const ShakeLevel& known : learned) {
+    const double square = std::pow((known.force - level.force) / kSmoothing, 2) +
+                          std::pow((known.rate - level.rate) / kSmoothing, 2);
+    sum += std::exp(-0.5 * square) / (2 * kPi * kSmoothing * kSmoothing);
+  }
+  return sum / static_cast<double>(learned.size() + 1);
+}
+
+double log_deviation(double variance) { return 0.5 * std::log(std::max(variance, 1e-20)); }
+
+}  // namespace
+
+/// About the first sample, so that squares of gravity do not hide what shakes.
+void ShakeMeter::add(const ImuIncrement& increment) {
+  Eigen::Matrix<double, 6, 1> rates;
+  rates << increment.dvel_b, increment.dtheta_b;
+  rates /= increment.dt();
+  if (samples_++ == 0) first_ = rates;
+  rates -= first_;
+  sum_ += rates;
+  squares_ += rates.cwiseAbs2();
+}
+
+std::optional<ShakeLevel> ShakeMeter::level() const {
+  if (samples_ < kLeastSamples) return std::nullopt;
+  const Eigen::Matrix<double, 6, 1> variance = squares_ / samples_ - (sum_ / samples_).cwiseAbs2();
+  return ShakeLevel{log_deviation(variance.head<3>().sum()),
+                    log_deviation(variance.tail<3>().sum())};
+}
+
+void RestLevels::learn(const ShakeLevel& level, bool at_rest) {
+  std::deque<ShakeLevel>& learned = at_rest ? rest_ : motion_;
+  learned.push_back(level);
+  if (learned.size() > kMemory) learned.pop_front();
+}
+
+double RestLevels::log_odds(const ShakeLevel& level) const {
+  return std::log(density(rest_, level) / density(motion_, level));
+}
+
+}  // namespace foucault::diagnosis

@@ -1,0 +1,34 @@
+#include "vehicle_point.h"
+
+#include "foucault/core/so3.h"
+
+namespace foucault::measurement {
+
+VehiclePoint vehicle_point(const BodyStretch& stretch, const Eigen::Matrix3d& C_v_b,
+                           const state::NavState& x, const state::Layout& layout) {
+  const BodyVelocity u = body_velocity(stretch, x);
+  const state::SlowBlock* arm = layout.find(state::block::wheel_lever_arm);
+  const state::SlowBlock* mounting = layout.find(state::block::mounting);
+  const Eigen::Vector3d omega_b = stretch.rate_b - x.bias.gyro;
+  Eigen::Vector3d l_b = Eigen::Vector3d::Zero();
+  if (arm) l_b = x.slow.segment<3>(arm->index);
+  Eigen::Vector3d turn = Eigen::Vector3d::Zero();
+  if (mounting) turn.tail<2>() = x.slow.segment<2>(mounting->index);
+  const Eigen::Matrix3d M = so3::exp(turn).toRotationMatrix();
+  const Eigen::Vector3d told_v = C_v_b * (u.value_b + omega_b.cross(l_b));
+  const Eigen::Matrix3d by_b = M * C_v_b;
+
+  VehiclePoint point;
+  point.velocity_v = M * told_v;
+  point.H.setZero(3, layout.size());
+  point.H.leftCols<state::kNodeSize>() = by_b * u.J;
+  state::columns_of(point.H, state::block::gyro_bias) += by_b * so3::skew(l_b);
+  if (arm) state::columns_of(point.H, *arm) = by_b * so3::skew(omega_b);
+  if (mounting) {
+    state::columns_of(point.H, *mounting) =
+        -(M * so3::skew(told_v) * so3::right_jacobian(turn)).rightCols<2>();
+  }
+  return point;
+}
+
+}  // namespace foucault::measurement

@@ -1,0 +1,18 @@
+#pragma once
+
+#include "foucault/measurement/body_stretch.h"
+#include "foucault/measurement/observation.h"
+
+namespace foucault::measurement {
+
+/// Velocity of the point of the vehicle that does not slip, in the vehicle's axes, averaged over a
+/// stretch: M C_v_b (u + omega x l), M = exp(0, pitch, heading) the block `mounting`, l the block
+/// `wheel_lever_arm`, omega the mean rate less the bias.
+struct VehiclePoint {
+  Eigen::Vector3d velocity_v;
+  state::RowsByState<3> H;  ///< by all blocks of the layout
+};
+VehiclePoint vehicle_point(const BodyStretch& stretch, const Eigen::Matrix3d& C_v_b,
+                           const state::NavState& x, const state::Layout& layout);
+
+}  // namespace foucault::measurement

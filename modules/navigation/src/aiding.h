@@ -1,0 +1,78 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "foucault/diagnosis/fix_judge.h"
+#include "foucault/diagnosis/rest_levels.h"
+#include "foucault/diagnosis/slip_watch.h"
+#include "foucault/measurement/body_stretch.h"
+#include "foucault/measurement/navigator.h"
+#include "foucault/navigation/run_options.h"
+#include "foucault/state/interfaces.h"
+
+namespace foucault::navigation {
+
+/// What is known of a vehicle without satellites: that it stands, that its wheels do not slip
+/// sideways, how fast they turn. Used at stops that are about a second apart, each over all that
+/// was sensed since the one before: slip and vibration are no white noise at the rate of an IMU.
+/// - At rest, if fixes hold the state and it does not move, or if the IMU shakes as it did there
+/// and
+///   not as in motion (diagnosis::RestLevels): zero velocity and zero rate.
+/// - In motion: nonholonomic and wheel speed, once a fit to what fixes showed has found how large
+///   slip is (diagnosis::SlipWatch), with that noise; of `on`, from the begin on.
+/// Each is gated by the chi-square test of its own dimension, as fixes are.
+class Aiding {
+ public:
+  Aiding(const NavigationRunOptions& options, state::Sink& sink);
+
+  /// From here on.
+  void start(int64_t t_ns, const state::ImuBias& bias);
+  void add(const WheelSpeed& speed) { wheel_waits_.push_back(speed); }
+  /// `made_up`: bridges a hole; nothing was sensed since the last stop then.
+  void propagate(const ImuIncrement& increment, bool made_up);
+  /// The state has become worse than its covariance may say.
+  void doubt_state(int64_t t_ns);
+
+  bool is_due(int64_t t_ns) const;
+  /// Uses what there is. held: fixes hold the state.
+  void stop(int64_t t_ns, bool held, measurement::Navigator& navigator);
+
+  const diagnosis::SlipWatch& slip_watch() const { return slip_; }
+
+ private:
+  struct Stretch {
+    measurement::BodyStretchBuilder body, wheel;
+    diagnosis::ShakeMeter shake;
+    Eigen::Vector3d turned_b = Eigen::Vector3d::Zero();  ///< sum of raw dtheta
+    double wheel_sum = 0;
+    bool made_up = false;
+  };
+
+  void take_wheel_until(const ImuIncrement& increment);
+  std::optional<double> mean_wheel() const;
+  bool stands(const state::Epoch& now, bool held);
+  void use_rest(int64_t t_ns, measurement::Navigator& navigator);
+  void use_wheels(int64_t t_ns, const measurement::BodyStretch& stretch,
+                  measurement::Navigator& navigator);
+  std::optional<Eigen::Vector2d> slip_sigma() const;
+  std::optional<double> wheel_sigma() const;
+  void use(int64_t t_ns, const measurement::ObservationPtr& observation, int dimension,
+           measurement::Navigator& navigator);
+
+  NavigationRunOptions options_;
+  state::Sink& sink_;
+  bool any_ = false;
+  int64_t begin_ns_ = 0, end_ns_ = 0;
+  Stretch stretch_;
+  std::deque<WheelSpeed> wheel_waits_;
+  diagnosis::RestLevels levels_;
+  diagnosis::SlipWatch slip_;
+  std::map<std::string_view, diagnosis::FixJudge> judges_;
+};
+
+}  // namespace foucault::navigation
