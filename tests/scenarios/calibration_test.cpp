@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
+#include <string>
 #include <vector>
 
 #include "foucault/core/time.h"
+#include "foucault/geodesy/place.h"
 #include "foucault/simulation/simulated_source.h"
 #include "methods.h"
 #include "settings.h"
@@ -105,6 +108,66 @@ TEST(CalibrationOverSeeds, ErrorsAreAsLargeAsTheirSigmas) {
   }
   EXPECT_GT(squares, 31);
   EXPECT_LT(squares, 69);
+}
+
+/// Of 1 cm, 0.7 of it from one fix to the next.
+class LastingError {
+ public:
+  explicit LastingError(int64_t seed) : rng_(static_cast<unsigned>(seed)), error_(draw()) {}
+
+  void add_to(GnssFix& fix) {
+    constexpr double kSigma = 0.01, kKept = 0.7;
+    fix.antenna = geodesy::displaced(fix.antenna, kSigma * error_, geodesy::Place(fix.antenna));
+    error_ = kKept * error_ + std::sqrt(1 - kKept * kKept) * draw();
+  }
+
+ private:
+  Eigen::Vector3d draw() { return {normal_(rng_), normal_(rng_), normal_(rng_)}; }
+
+  std::mt19937 rng_;
+  std::normal_distribution<double> normal_;
+  Eigen::Vector3d error_;
+};
+
+/// Error of the offset over its sigma, with a consumer's IMU and RTK four times a second.
+double offset_among_lasting_errors(const std::string& method, int64_t seed) {
+  Settings settings;
+  settings.imu.preset = "ADIS16465";
+  settings.imu.arw_deg_sqrt_h = 3.4;
+  settings.imu.vrw_m_s_sqrt_h = 0.6;
+  settings.calibrate.time_offset = "on";
+  settings.calibrate.time_offset_sigma_s = 0.01;
+  simulation::ScenarioOptions scenario;
+  scenario.duration_s = 400;
+  scenario.seed = seed;
+  scenario.imu_rate_hz = 100;
+  scenario.gnss_rate_hz = 4;
+  scenario.gnss_noise = false;
+  simulation::SimulatedSource source(scenario, settings.imu.noise());
+  LastEpoch sink;
+  const auto estimator = find_method(method).make(settings, source.mounting(), sink);
+  LastingError error(seed);
+  while (std::optional<Measurement> measurement = source.next()) {
+    if (auto* fix = std::get_if<GnssFix>(&*measurement)) error.add_to(*fix);
+    estimator->process(*measurement);
+  }
+  estimator->finish();
+  const state::Layout layout = settings.calibrate.layout();
+  const state::SlowBlock& offset = *layout.find(state::block::time_offset);
+  return sink.last.slow[offset.index] /
+         std::sqrt(state::part(sink.last.covariance, offset, offset)(0, 0));
+}
+
+/// The velocity that a filter sees the offset by has the noise of the last fixes, that of a batch
+/// has not. A mean of four is within 1.5 sigmas.
+TEST(CalibrationAmongLastingErrors, BatchFindsTheTimeOffset) {
+  double batch = 0, filter = 0;
+  for (int64_t seed = 1; seed <= 4; ++seed) {
+    batch += offset_among_lasting_errors("batch", seed) / 4;
+    filter += offset_among_lasting_errors("ekf", seed) / 4;
+  }
+  EXPECT_LT(std::abs(batch), 1.5);
+  EXPECT_LT(filter, -1.5);  // what the data would show of a batch that did as a filter does
 }
 
 }  // namespace

@@ -242,7 +242,9 @@ void BatchSolver::optimize() {
 
 /// True when the step that was taken is known to be the last one that matters. If the quadratic
 /// model missed the change of cost by a share e, the gradient left is of order e and the cost left
-/// e^2 of the change.
+/// e^2 of the change. Not so if nearly all of the change was in directions that are linear, as when
+/// the biases of a forward run jump from node to node by many sigmas of their drift: a change that
+/// exceeds what is left says nothing of the others.
 bool BatchSolver::plain_steps() {
   for (int64_t i = 0; i < options_.max_iterations; ++i) {
     const double predicted = step();
@@ -252,7 +254,7 @@ bool BatchSolver::plain_steps() {
     const double change = share * predicted;
     if (predicted < kCostLeft || std::abs(change) <= kCostShareLeft * before) return true;
     if (!better) return false;
-    if ((1 - share) * (1 - share) * change < kCostLeft) return true;
+    if (change < cost_ && (1 - share) * (1 - share) * change < kCostLeft) return true;
   }
   return false;
 }

@@ -9,6 +9,10 @@ namespace foucault::measurement {
 /// d(p_a) = dp - C [l x] d + C dl. Where the time offset s is estimated it is that of s earlier,
 /// p_a - s v_a + s^2/2 a_a, with the acceleration of the stamp: a jerk of 2 m/s^3 is worth 0.3 mm
 /// at 0.1 s, 9 mm at 0.3 s.
+///
+/// d(p_a)/ds is -v_a as it is estimated, with the noise of the last fixes in it. If errors of fixes
+/// last (0.5 s and more), that goes with the next innovation, and what a filter finds of s is off
+/// by as much as 3 sigmas; graphs, that take v_a from fixes on both sides, are not.
 class GnssPosition final : public Observation {
  public:
   explicit GnssPosition(const GnssFix& fix);
