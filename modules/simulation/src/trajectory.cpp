@@ -47,6 +47,13 @@ struct Attitude {
 
 }  // namespace
 
+Eigen::Vector3d point_velocity_n(const Motion& motion, const Eigen::Vector3d& p_v_x) {
+  const Eigen::Vector3d omega_ie_v =
+      motion.q_n_v.conjugate() * geodesy::wgs84::earth_rate_n(motion.position.latitude);
+  const Eigen::Vector3d omega_ev_v = motion.omega_iv_v - omega_ie_v;
+  return motion.velocity_n + motion.q_n_v * omega_ev_v.cross(p_v_x);
+}
+
 Trajectory::Trajectory(const Geodetic& origin, QuinticSpline position_w, QuinticSpline euler,
                        const Vibration& vibration)
     : origin_e_(geodesy::wgs84::geodetic_to_ecef(origin)),
@@ -71,9 +78,12 @@ QuinticSpline::Sample Trajectory::euler_at(double t) const {
   return sample;
 }
 
-Motion Trajectory::at(double t) const {
-  const QuinticSpline::Sample position = position_at(t);
-  const QuinticSpline::Sample euler = euler_at(t);
+Motion Trajectory::at(double t) const { return motion_of(position_at(t), euler_at(t)); }
+
+Motion Trajectory::steady_at(double t) const { return motion_of(position_w_.at(t), euler_.at(t)); }
+
+Motion Trajectory::motion_of(const QuinticSpline::Sample& position,
+                             const QuinticSpline::Sample& euler) const {
   const Attitude attitude(euler.value, euler.rate);
 
   Motion motion;

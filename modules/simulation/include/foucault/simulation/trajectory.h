@@ -19,6 +19,10 @@ struct Motion {
   Eigen::Vector3d f_v;         ///< specific force [m/s^2]
 };
 
+/// Velocity relative to the Earth, in the NED of the IMU, of a point of the vehicle [m/s].
+/// p_v_x: IMU to the point, in v [m].
+Eigen::Vector3d point_velocity_n(const Motion& motion, const Eigen::Vector3d& p_v_x);
+
 /// A vibration on top of the motion: sines of one frequency, a quarter of a period apart from axis
 /// to axis, so that the angles cone and position and angles scull.
 struct Vibration {
@@ -43,11 +47,15 @@ class Trajectory {
   /// t [s] since the start, in [0, duration()].
   Motion at(double t) const;
 
+  /// The same without the vibration, which is of the IMU and its mount, not of the wheels.
+  Motion steady_at(double t) const;
+
   double duration() const { return position_w_.duration(); }  ///< [s]
 
  private:
   QuinticSpline::Sample position_at(double t) const;
   QuinticSpline::Sample euler_at(double t) const;
+  Motion motion_of(const QuinticSpline::Sample& position, const QuinticSpline::Sample& euler) const;
 
   Eigen::Vector3d origin_e_;
   Eigen::Matrix3d R_e_w_;
