@@ -8,8 +8,7 @@
 namespace foucault::simulation {
 namespace {
 
-constexpr double kLongestPiece = 0.01;      ///< [s]
-constexpr double kRectificationSpeed = 15;  ///< [m/s]
+constexpr double kLongestPiece = 0.01;  ///< [s]
 
 struct Node {
   double x;       ///< in [-1, 1]
@@ -110,7 +109,7 @@ ImuErrors::ImuErrors(const imu::ImuNoise& noise, const ImuFlaws& flaws, int64_t 
 }
 
 ImuIncrement ImuErrors::apply(const ImuIncrement& exact, double speed) {
-  const double relative = speed / kRectificationSpeed;
+  const double relative = speed / kVibrationSpeed;
   const Eigen::Vector3d rectified = relative * relative * rectification_;
   ImuIncrement measured = exact;
   measured.dtheta_b = gyro_.apply(exact.dtheta_b, exact.dt(), tau_, Eigen::Vector3d::Zero());

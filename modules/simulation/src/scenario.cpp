@@ -1,5 +1,6 @@
 #include "foucault/simulation/scenario.h"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <memory>
@@ -83,9 +84,33 @@ const Scenario& find_scenario(const std::string& name) {
   throw UsageError("scenario '" + name + "' is unknown; choose one of " + known);
 }
 
-Vibration vibration_of(const ScenarioOptions& options) {
+/// Growth per m/s times the speed at the knots, taken from their neighbours.
+QuinticSpline growth_by_speed(const std::vector<Eigen::Vector3d>& positions, double knot_interval,
+                              double per_speed) {
+  const std::size_t last = positions.size() - 1;
+  std::vector<Eigen::Vector3d> growth;
+  growth.reserve(positions.size());
+  for (std::size_t k = 0; k <= last; ++k) {
+    const std::size_t before = k == 0 ? 0 : k - 1, after = std::min(k + 1, last);
+    const double seconds = static_cast<double>(after - before) * knot_interval;
+    const double speed = (positions[after] - positions[before]).norm() / seconds;
+    growth.emplace_back(per_speed * speed, 0, 0);
+  }
+  return QuinticSpline(knot_interval, std::move(growth));
+}
+
+Vibration vibration_of(const ScenarioOptions& options,
+                       const std::vector<Eigen::Vector3d>& positions, double knot_interval) {
   const double w = 2 * kPi * options.vibration_hz;
-  return {options.vibration_hz, options.vibration_m_s2 / (w * w), options.vibration_deg * kDegree};
+  Vibration vibration;
+  vibration.frequency_hz = options.vibration_hz;
+  vibration.position_amplitude = options.vibration_m_s2 / (w * w);
+  vibration.angle_amplitude = options.vibration_deg * kDegree;
+  if (options.vibration_growth != 0) {
+    vibration.growth =
+        growth_by_speed(positions, knot_interval, options.vibration_growth / kVibrationSpeed);
+  }
+  return vibration;
 }
 
 /// The IMU in w [m]; the roll-out's position is of the point at wheel_lever_arm_m.
@@ -112,8 +137,9 @@ Trajectory follow(Rollout& rollout, const ScenarioOptions& options, double knot_
     positions.push_back(imu_position_w(pose, frame, options));
     angles.push_back(pose.euler);
   }
+  Vibration vibration = vibration_of(options, positions, knot_interval);
   return Trajectory(options.start_position(), QuinticSpline(knot_interval, std::move(positions)),
-                    QuinticSpline(knot_interval, std::move(angles)), vibration_of(options));
+                    QuinticSpline(knot_interval, std::move(angles)), std::move(vibration));
 }
 
 /// Of roll, pitch, heading [deg].
@@ -155,6 +181,8 @@ void ScenarioOptions::fields(ConfigFields& f) {
   f.number("vibration_hz", vibration_hz, {1, 1000}, "frequency of the vibration");
   f.number("vibration_m_s2", vibration_m_s2, kNotNegative, "acceleration amplitude, 0: none");
   f.number("vibration_deg", vibration_deg, kNotNegative, "angle amplitude, 0: none");
+  f.number("vibration_growth", vibration_growth, kNotNegative,
+           "amplitudes are 1 + this * speed / 15 m/s times as large");
   f.number("vibration_rectification_m_s2", vibration_rectification_m_s2, kNotNegative,
            "accelerometer bias at 15 m/s, by the speed's square");
   f.numbers("imu_gap_start_s", imu_gap_start_s, kNotNegative, "IMU gaps, seconds after start");

@@ -198,15 +198,30 @@ TEST(Scenario, CityStandsStillAtItsLights) {
   }
 }
 
-TEST(Scenario, VibratesAlsoWhereItStands) {
-  ScenarioOptions options;
-  options.duration_s = 60;
-  const Eigen::Vector3d quiet = make_trajectory(options).at(20).f_v;
-  options.vibration_m_s2 = 0.5;
-  const Trajectory truth = make_trajectory(options);
+/// Largest vertical vibration within a second [m/s^2].
+double vibration(const Trajectory& vibrating, const Trajectory& quiet, double from) {
   std::vector<double> extra;
-  for (double t = 20; t < 21; t += 0.0007) extra.push_back((truth.at(t).f_v - quiet).z());
-  EXPECT_NEAR(farthest_from_zero(extra), 0.5, 0.01);
+  for (double t = from; t < from + 1; t += 0.0007) {
+    extra.push_back((vibrating.at(t).f_v - quiet.at(t).f_v).z());
+  }
+  return farthest_from_zero(extra);
+}
+
+TEST(Scenario, VibratesWhereItStandsAndMoreWhereItDrives) {
+  ScenarioOptions options;
+  options.name = "motorway";
+  options.duration_s = 120;
+  const Trajectory quiet = make_trajectory(options);
+  ASSERT_NEAR(quiet.at(100).velocity_n.norm(), 30, 3);
+  options.vibration_m_s2 = 0.5;
+  const Trajectory even = make_trajectory(options);
+  options.vibration_growth = 3;
+  const Trajectory growing = make_trajectory(options);
+  EXPECT_NEAR(vibration(even, quiet, 20), 0.5, 0.01);
+  EXPECT_NEAR(vibration(even, quiet, 100), 0.5, 0.01);
+  EXPECT_NEAR(vibration(growing, quiet, 20), 0.5, 0.01);
+  const double speed = quiet.at(100.5).velocity_n.norm();
+  EXPECT_NEAR(vibration(growing, quiet, 100), 0.5 * (1 + 3 * speed / 15), 0.05);
 }
 
 TEST(Scenario, MotorwayGoesFarAndFast) {

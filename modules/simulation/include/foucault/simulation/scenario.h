@@ -33,6 +33,7 @@ class ScenarioOptions : public Configurable {
   double scale_factor_sigma_ppm = 0;
   double cross_axis_sigma_ppm = 0;                                  ///< see ImuFlaws
   double vibration_hz = 25, vibration_m_s2 = 0, vibration_deg = 0;  ///< amplitudes; 0: none
+  double vibration_growth = 0;                                      ///< of both, by speed / 15 m/s
   double vibration_rectification_m_s2 = 0;                          ///< see ImuFlaws
   std::vector<double> imu_gap_start_s;                              ///< after start
   double imu_gap_length_s = 3;

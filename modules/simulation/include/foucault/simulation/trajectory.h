@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <optional>
 
 #include "foucault/core/measurement.h"
 #include "foucault/simulation/spline.h"
@@ -23,12 +24,17 @@ struct Motion {
 /// p_v_x: IMU to the point, in v [m].
 Eigen::Vector3d point_velocity_n(const Motion& motion, const Eigen::Vector3d& p_v_x);
 
+/// For which options tell what of a vibration goes by the speed [m/s].
+inline constexpr double kVibrationSpeed = 15;
+
 /// A vibration on top of the motion: sines of one frequency, a quarter of a period apart from axis
-/// to axis, so that the angles cone and position and angles scull.
+/// to axis, so that the angles cone and position and angles scull. It may grow with time.
 struct Vibration {
   double frequency_hz = 0;
   double position_amplitude = 0;  ///< each axis of w [m]
   double angle_amplitude = 0;     ///< roll, pitch and heading [rad]
+  /// x: both amplitudes are 1 + so many times as large.
+  std::optional<QuinticSpline> growth;
 };
 
 /// Closed-form motion over the rotating WGS-84 ellipsoid, C4 in position and attitude: splines
@@ -42,7 +48,7 @@ class Trajectory {
  public:
   /// `position_w` [m]; `euler` (roll, pitch, heading) [rad], the heading without jumps.
   Trajectory(const Geodetic& origin, QuinticSpline position_w, QuinticSpline euler,
-             const Vibration& vibration = {});
+             Vibration vibration = {});
 
   /// t [s] since the start, in [0, duration()].
   Motion at(double t) const;
@@ -55,6 +61,7 @@ class Trajectory {
  private:
   QuinticSpline::Sample position_at(double t) const;
   QuinticSpline::Sample euler_at(double t) const;
+  void vibrate(QuinticSpline::Sample& sample, double amplitude, double t) const;
   Motion motion_of(const QuinticSpline::Sample& position, const QuinticSpline::Sample& euler) const;
 
   Eigen::Vector3d origin_e_;
