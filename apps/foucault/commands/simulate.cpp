@@ -58,11 +58,11 @@ std::function<void(Call&)> declare_simulate(CLI::App& app) {
     if (o->seed) set_config(fmt::format("scenario.seed={}", *o->seed), settings);
     const SimulationCounts counts =
         write_simulation(settings, laboratory::find_fault_case(o->fault), o->out, call.console);
-    call.console.say(
-        fmt::format("{}: {:.1f} s of '{}' with {}, {} IMU samples, {} fixes, {} poses "
-                    "of the truth",
-                    o->out, settings.scenario.duration_s, settings.scenario.name,
-                    settings.imu.preset, counts.imu_samples, counts.fixes, counts.reference_poses));
+    call.console.say(fmt::format(
+        "{}: {:.1f} s of '{}' with {}, {} IMU samples, {} fixes, {} wheel "
+        "speeds, {} poses of the truth",
+        o->out, settings.scenario.duration_s, settings.scenario.name, settings.imu.preset,
+        counts.imu_samples, counts.fixes, counts.wheel_speeds, counts.reference_poses));
   };
 }
 

@@ -17,6 +17,7 @@ using laboratory::FaultCase;
 void count(const Measurement& measurement, SimulationCounts& counts) {
   if (std::holds_alternative<ImuIncrement>(measurement)) ++counts.imu_samples;
   if (std::holds_alternative<GnssFix>(measurement)) ++counts.fixes;
+  if (std::holds_alternative<WheelSpeed>(measurement)) ++counts.wheel_speeds;
   if (std::holds_alternative<ReferencePose>(measurement)) ++counts.reference_poses;
 }
 

@@ -21,6 +21,7 @@ class SimulationSettings : public Configurable {
 struct SimulationCounts {
   int64_t imu_samples = 0;
   int64_t fixes = 0;
+  int64_t wheel_speeds = 0;
   int64_t reference_poses = 0;
 };
 

@@ -249,7 +249,7 @@ Consistency consistency_run(const Trip& trip, uint64_t seed, const imu::ImuNoise
                             double gnss_end_s) {
   std::mt19937_64 rng{seed};
   const Eigen::Vector3d gnss_sigma(0.01, 0.01, 0.02);
-  simulation::ImuErrors errors(adis16465(), 0, static_cast<int64_t>(seed));
+  simulation::ImuErrors errors(adis16465(), {}, static_cast<int64_t>(seed));
   const state::NodeVector sigmas = initial_sigmas();
   state::NavState truth;
   truth = trip.truth(trip.begin_ns());
@@ -343,7 +343,7 @@ state::Layout with_scale_factors() {
 /// axis turns enough in a car to be seen.
 EkfNavigator filter_that_found_scale_factors(const Trip& trip, const Eigen::Vector3d& gyro_scale) {
   std::mt19937_64 rng{3};
-  simulation::ImuErrors errors(adis16465(), 0, 3);
+  simulation::ImuErrors errors(adis16465(), {}, 3);
   EkfNavigator filter(adis16465(), with_scale_factors(), EkfOptions{});
   state::NavState begin;
   begin = trip.truth(trip.begin_ns());

@@ -24,6 +24,18 @@ struct Integral {
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
 };
 
+Eigen::Matrix3d off_diagonal(double sigma, Draws& draws) {
+  const Eigen::Vector3d above = sigma * draws.normal3(), below = sigma * draws.normal3();
+  Eigen::Matrix3d m;
+  m << 0, above.x(), above.y(), below.x(), 0, above.z(), below.y(), below.z(), 0;
+  return m;
+}
+
+Eigen::Vector3d signs(Draws& draws) {
+  const double x = draws.sign(), y = draws.sign(), z = draws.sign();
+  return {x, y, z};
+}
+
 void add_piece(Integral& sum, const Trajectory& trajectory, double middle, double half) {
   for (const Node& node : kGaussLegendre) {
     const Motion motion = trajectory.at(middle + half * node.x);
@@ -67,29 +79,41 @@ ImuErrors::Triad::Triad(double noise_density_in, double bias_sigma_in, double tu
       scale(scale_sigma * scale_draws.normal3()),
       wander(bias_sigma * bias_draws.normal3()) {}
 
-Eigen::Vector3d ImuErrors::Triad::apply(const Eigen::Vector3d& exact, double dt, double tau) {
+Eigen::Vector3d ImuErrors::Triad::apply(const Eigen::Vector3d& exact, double dt, double tau,
+                                        const Eigen::Vector3d& rectified_at_end) {
   const Eigen::Vector3d before = bias();
+  rectified = rectified_at_end;
   const double driving = bias_sigma * std::sqrt(-std::expm1(-2 * dt / tau));
   wander = std::exp(-dt / tau) * wander + driving * bias_draws.normal3();
   const Eigen::Vector3d white = noise_density * std::sqrt(dt) * white_draws.normal3();
-  return exact + scale.cwiseProduct(exact) + (before + bias()) * (dt / 2) + white;
+  return exact + scale.cwiseProduct(exact) + cross * exact + (before + bias()) * (dt / 2) + white;
 }
 
-ImuErrors::ImuErrors(const imu::ImuNoise& noise, double scale_sigma, int64_t seed)
+ImuErrors::ImuErrors(const imu::ImuNoise& noise, const ImuFlaws& flaws, int64_t seed)
     : tau_(noise.bias_tau),
       scale_draws_(seed, RandomStream::scale_factor),
-      gyro_(noise.gyro_noise_density, noise.gyro_bias_sigma, noise.gyro_turn_on_sigma, scale_sigma,
-            Draws(seed, RandomStream::gyro_white), Draws(seed, RandomStream::gyro_bias),
-            Draws(seed, RandomStream::gyro_turn_on), scale_draws_),
+      gyro_(noise.gyro_noise_density, noise.gyro_bias_sigma, noise.gyro_turn_on_sigma,
+            flaws.scale_sigma, Draws(seed, RandomStream::gyro_white),
+            Draws(seed, RandomStream::gyro_bias), Draws(seed, RandomStream::gyro_turn_on),
+            scale_draws_),
       accel_(noise.accel_noise_density, noise.accel_bias_sigma, noise.accel_turn_on_sigma,
-             scale_sigma, Draws(seed, RandomStream::accel_white),
+             flaws.scale_sigma, Draws(seed, RandomStream::accel_white),
              Draws(seed, RandomStream::accel_bias), Draws(seed, RandomStream::accel_turn_on),
-             scale_draws_) {}
+             scale_draws_) {
+  Draws cross_draws(seed, RandomStream::cross_axis);
+  gyro_.cross = off_diagonal(flaws.cross_axis_sigma, cross_draws);
+  accel_.cross =
+      off_diagonal(flaws.cross_axis_sigma, cross_draws).triangularView<Eigen::StrictlyUpper>();
+  Draws sign_draws(seed, RandomStream::rectification);
+  rectification_ = flaws.rectification * signs(sign_draws);
+}
 
-ImuIncrement ImuErrors::apply(const ImuIncrement& exact) {
+ImuIncrement ImuErrors::apply(const ImuIncrement& exact, double speed) {
+  const double relative = speed / kVibrationSpeed;
+  const Eigen::Vector3d rectified = relative * relative * rectification_;
   ImuIncrement measured = exact;
-  measured.dtheta_b = gyro_.apply(exact.dtheta_b, exact.dt(), tau_);
-  measured.dvel_b = accel_.apply(exact.dvel_b, exact.dt(), tau_);
+  measured.dtheta_b = gyro_.apply(exact.dtheta_b, exact.dt(), tau_, Eigen::Vector3d::Zero());
+  measured.dvel_b = accel_.apply(exact.dvel_b, exact.dt(), tau_, rectified);
   return measured;
 }
 

@@ -15,6 +15,7 @@ constexpr double kMaxBraking = 3.0;                  ///< [m/s^2]
 constexpr double kRollPerLateral = -0.4 * kDegree;   ///< body leans out of the turn [rad/(m/s^2)]
 constexpr double kPitchPerForward = 0.35 * kDegree;  ///< nose up when it accelerates
 constexpr double kSuspensionLag = 0.3;               ///< [s]
+constexpr double kSlipsFreely = 3;                   ///< slower, the slip shrinks alike [m/s]
 
 /// Speed at which a section is driven [m/s].
 double section_speed(const RoadSection& section) {
@@ -103,6 +104,11 @@ RoadVehicle::RoadVehicle(const RoadStyle& style, const ScenarioOptions& options)
       position_(options.start_position()),
       start_height_(options.height_m),
       heading_(start_heading(options)),
+      slip_sigma_(options.slip_sigma_m_s),
+      slip_tau_(options.slip_tau_s),
+      slip_per_lateral_(options.slip_rad_per_m_s2),
+      slip_draws_(options.seed, RandomStream::slip),
+      slip_(slip_draws_.normal()),
       hills_({}),
       bumps_({}),
       roll_noise_({}),
@@ -132,8 +138,13 @@ RolloutPose RoadVehicle::pose() const {
   pose.euler.x() = kRollPerLateral * lateral + roll_noise_.at(distance_);
   pose.euler.y() = std::atan(hills_.slope(distance_)) + kPitchPerForward * acceleration_ +
                    pitch_noise_.at(distance_);
-  pose.euler.z() = heading_;
+  pose.euler.z() = heading_ - slip_angle();
   return pose;
+}
+
+double RoadVehicle::slip_angle() const {
+  return std::atan(slip_sigma_ * slip_ / std::max(speed_, kSlipsFreely)) +
+         slip_per_lateral_ * speed_ * yaw_rate_;
 }
 
 double RoadVehicle::curvature() const {
@@ -190,6 +201,7 @@ void RoadVehicle::drive(double dt) {
   heading_ += yaw_rate_ * dt;
   along_ += step;
   distance_ += step;
+  slip_ = next_markov(slip_, dt / slip_tau_, slip_draws_.normal());
   position_.height =
       start_height_ + hills_.at(distance_) - hills_.at(0) + bumps_.at(distance_) - bumps_.at(0);
 }

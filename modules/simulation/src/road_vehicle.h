@@ -50,6 +50,7 @@ class Road {
 };
 
 /// A car that follows a road: slows for turns and lights, rolls, pitches and bounces a little.
+/// Its position is of the point that does not slip, whose course the heading is, but for slip_*.
 class RoadVehicle : public Rollout {
  public:
   RoadVehicle(const RoadStyle& style, const ScenarioOptions& options);
@@ -60,6 +61,7 @@ class RoadVehicle : public Rollout {
   void look_ahead();
   double allowed_speed() const;
   double curvature() const;
+  double slip_angle() const;
   void leave_section();
   void stand(double dt);
   void drive(double dt);
@@ -69,13 +71,17 @@ class RoadVehicle : public Rollout {
   std::deque<RoadSection> sections_;  ///< the current one and what the driver sees
   Geodetic position_;
   double start_height_;
-  double heading_;
+  double heading_;           ///< of the course [rad]
   double along_ = 0;         ///< in the current section [m]
   double distance_ = 0;      ///< since the start [m]
   double speed_ = 0;         ///< [m/s]
   double acceleration_ = 0;  ///< low-passed [m/s^2]
   double yaw_rate_ = 0;      ///< [rad/s]
   double standing_s_ = 0;
+  double slip_sigma_, slip_tau_;  ///< [m/s], [s]
+  double slip_per_lateral_;       ///< [rad/(m/s^2)]
+  Draws slip_draws_;
+  double slip_;  ///< in units of slip_sigma_; stays as it is while the car stands
   SineSum hills_, bumps_, roll_noise_, pitch_noise_;  ///< by distance
 };
 

@@ -34,6 +34,14 @@ const ScenarioOptions& checked(const ScenarioOptions& options) {
   return options;
 }
 
+ImuFlaws flaws_of(const ScenarioOptions& options) {
+  ImuFlaws flaws;
+  flaws.scale_sigma = options.scale_factor_sigma_ppm * 1e-6;
+  flaws.cross_axis_sigma = options.cross_axis_sigma_ppm * 1e-6;
+  flaws.rectification = options.vibration_rectification_m_s2;
+  return flaws;
+}
+
 }  // namespace
 
 StampSequence::StampSequence(int64_t start_ns, double rate_hz, double phase_s)
@@ -55,10 +63,13 @@ SimulatedSource::SimulatedSource(const ScenarioOptions& options, const imu::ImuN
       start_ns_(rounded_start(options)),
       end_ns_(start_ns_ + nanoseconds(options.duration_s)),
       mounting_{options.q_v_b()},
+      true_q_v_b_(options.true_q_v_b()),
       trajectory_(make_trajectory(options)),
       gnss_(options),
-      errors_(noise, options.scale_factor_sigma_ppm * 1e-6, options.seed),
+      wheels_(options),
+      errors_(noise, flaws_of(options), options.seed),
       fixes_{StampSequence(start_ns_, options.gnss_rate_hz, options.gnss_phase_s)},
+      wheel_speeds_{StampSequence(start_ns_, options.wheel_rate_hz, 0)},
       references_{StampSequence(start_ns_, options.reference_rate_hz, 0)},
       increments_{StampSequence(start_ns_, options.imu_rate_hz, 0), 1},
       now_ns_(start_ns_) {}
@@ -66,15 +77,20 @@ SimulatedSource::SimulatedSource(const ScenarioOptions& options, const imu::ImuN
 std::optional<Measurement> SimulatedSource::next() {
   while (true) {
     const int64_t fix_ns = fixes_.next_ns(end_ns_).value_or(kNever);
+    const int64_t wheel_ns = wheel_speeds_.next_ns(end_ns_).value_or(kNever);
     const int64_t reference_ns = references_.next_ns(end_ns_).value_or(kNever);
     const int64_t increment_ns = increments_.next_ns(end_ns_).value_or(kNever);
-    const int64_t first_ns = std::min({fix_ns, reference_ns, increment_ns});
+    const int64_t first_ns = std::min({fix_ns, wheel_ns, reference_ns, increment_ns});
     if (first_ns == kNever) {
       now_ns_ = end_ns_;
       return std::nullopt;
     }
     now_ns_ = first_ns;
-    if (fix_ns == first_ns) return next_fix();
+    if (fix_ns == first_ns) {
+      if (std::optional<GnssFix> fix = next_fix()) return *fix;
+      continue;
+    }
+    if (wheel_ns == first_ns) return next_wheel_speed();
     if (reference_ns == first_ns) return next_reference();
     if (std::optional<ImuIncrement> increment = next_increment()) return *increment;
   }
@@ -88,9 +104,18 @@ Motion SimulatedSource::motion_at(int64_t t_ns) const {
   return trajectory_.at(seconds_between(start_ns_, t_ns));
 }
 
-GnssFix SimulatedSource::next_fix() {
+std::optional<GnssFix> SimulatedSource::next_fix() {
   const int64_t t_ns = fixes_.stamps.at(fixes_.index++);
-  return gnss_.measure(motion_at(t_ns), t_ns, seconds_between(start_ns_, t_ns));
+  const double t = seconds_between(start_ns_, t_ns);
+  const double measured = t - options_.gnss_time_offset_s - 1e-6 * options_.gnss_time_drift_ppm * t;
+  const GnssFix fix = gnss_.measure(trajectory_.at(measured), t_ns, t);
+  if (measured < 0 || measured > options_.duration_s) return std::nullopt;
+  return fix;
+}
+
+WheelSpeed SimulatedSource::next_wheel_speed() {
+  const int64_t t_ns = wheel_speeds_.stamps.at(wheel_speeds_.index++);
+  return wheels_.measure(trajectory_.steady_at(seconds_between(start_ns_, t_ns)), t_ns);
 }
 
 ReferencePose SimulatedSource::next_reference() {
@@ -106,10 +131,15 @@ ReferencePose SimulatedSource::next_reference() {
 std::optional<ImuIncrement> SimulatedSource::next_increment() {
   const int64_t begin_ns = increments_.stamps.at(increments_.index - 1);
   const int64_t end_ns = increments_.stamps.at(increments_.index++);
-  const ImuIncrement increment =
-      errors_.apply(exact_increment(trajectory_, mounting_.q_v_b, start_ns_, begin_ns, end_ns));
+  const ImuIncrement exact = exact_increment(trajectory_, true_q_v_b_, start_ns_, begin_ns, end_ns);
+  const ImuIncrement increment = errors_.apply(exact, rectifying_speed(end_ns));
   if (in_gap(increment)) return std::nullopt;
   return increment;
+}
+
+double SimulatedSource::rectifying_speed(int64_t t_ns) const {
+  if (options_.vibration_rectification_m_s2 == 0) return 0;
+  return trajectory_.steady_at(seconds_between(start_ns_, t_ns)).velocity_n.norm();
 }
 
 bool SimulatedSource::in_gap(const ImuIncrement& increment) const {
@@ -125,7 +155,7 @@ state::Epoch SimulatedSource::truth(int64_t t_ns) const {
   epoch.t_ns = t_ns;
   epoch.position = motion.position;
   epoch.velocity_n = motion.velocity_n;
-  epoch.q_n_b = motion.q_n_v * mounting_.q_v_b;
+  epoch.q_n_b = motion.q_n_v * true_q_v_b_;
   epoch.bias = true_bias();
   return epoch;
 }

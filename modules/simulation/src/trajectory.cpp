@@ -1,6 +1,7 @@
 #include "foucault/simulation/trajectory.h"
 
 #include <cmath>
+#include <utility>
 
 #include "foucault/core/constants.h"
 #include "foucault/geodesy/wgs84.h"
@@ -8,14 +9,21 @@
 namespace foucault::simulation {
 namespace {
 
+/// A number that changes, with its derivatives by time.
+struct Changing {
+  double value, rate, acceleration;
+};
+
 /// Adds amplitude * sin(w t + k pi / 2) on axis k, with its derivatives.
-void add_sine(QuinticSpline::Sample& sample, double amplitude, double frequency_hz, double t) {
+void add_sine(QuinticSpline::Sample& sample, const Changing& amplitude, double frequency_hz,
+              double t) {
   const double w = 2 * kPi * frequency_hz;
   const double s = std::sin(w * t), c = std::cos(w * t);
   const Eigen::Vector3d sine(s, c, -s), cosine(c, -s, -c);
-  sample.value += amplitude * sine;
-  sample.rate += amplitude * w * cosine;
-  sample.acceleration -= amplitude * w * w * sine;
+  sample.value += amplitude.value * sine;
+  sample.rate += amplitude.value * w * cosine + amplitude.rate * sine;
+  sample.acceleration -= amplitude.value * w * w * sine;
+  sample.acceleration += 2 * amplitude.rate * w * cosine + amplitude.acceleration * sine;
 }
 
 /// Rate of n relative to e, in n [rad/s] (transport rate).
@@ -47,33 +55,50 @@ struct Attitude {
 
 }  // namespace
 
+Eigen::Vector3d point_velocity_n(const Motion& motion, const Eigen::Vector3d& p_v_x) {
+  const Eigen::Vector3d omega_ie_v =
+      motion.q_n_v.conjugate() * geodesy::wgs84::earth_rate_n(motion.position.latitude);
+  const Eigen::Vector3d omega_ev_v = motion.omega_iv_v - omega_ie_v;
+  return motion.velocity_n + motion.q_n_v * omega_ev_v.cross(p_v_x);
+}
+
 Trajectory::Trajectory(const Geodetic& origin, QuinticSpline position_w, QuinticSpline euler,
-                       const Vibration& vibration)
+                       Vibration vibration)
     : origin_e_(geodesy::wgs84::geodetic_to_ecef(origin)),
       R_e_w_(geodesy::wgs84::R_e_n(origin.latitude, origin.longitude)),
       position_w_(std::move(position_w)),
       euler_(std::move(euler)),
-      vibration_(vibration) {}
+      vibration_(std::move(vibration)) {}
+
+void Trajectory::vibrate(QuinticSpline::Sample& sample, double amplitude, double t) const {
+  if (amplitude == 0) return;
+  Changing changing{amplitude, 0, 0};
+  if (vibration_.growth) {
+    const QuinticSpline::Sample growth = vibration_.growth->at(t);
+    changing = {amplitude * (1 + growth.value.x()), amplitude * growth.rate.x(),
+                amplitude * growth.acceleration.x()};
+  }
+  add_sine(sample, changing, vibration_.frequency_hz, t);
+}
 
 QuinticSpline::Sample Trajectory::position_at(double t) const {
   QuinticSpline::Sample sample = position_w_.at(t);
-  if (vibration_.position_amplitude != 0) {
-    add_sine(sample, vibration_.position_amplitude, vibration_.frequency_hz, t);
-  }
+  vibrate(sample, vibration_.position_amplitude, t);
   return sample;
 }
 
 QuinticSpline::Sample Trajectory::euler_at(double t) const {
   QuinticSpline::Sample sample = euler_.at(t);
-  if (vibration_.angle_amplitude != 0) {
-    add_sine(sample, vibration_.angle_amplitude, vibration_.frequency_hz, t);
-  }
+  vibrate(sample, vibration_.angle_amplitude, t);
   return sample;
 }
 
-Motion Trajectory::at(double t) const {
-  const QuinticSpline::Sample position = position_at(t);
-  const QuinticSpline::Sample euler = euler_at(t);
+Motion Trajectory::at(double t) const { return motion_of(position_at(t), euler_at(t)); }
+
+Motion Trajectory::steady_at(double t) const { return motion_of(position_w_.at(t), euler_.at(t)); }
+
+Motion Trajectory::motion_of(const QuinticSpline::Sample& position,
+                             const QuinticSpline::Sample& euler) const {
   const Attitude attitude(euler.value, euler.rate);
 
   Motion motion;

@@ -9,7 +9,7 @@ namespace foucault::simulation {
 namespace {
 
 constexpr double kVertical = 1;       ///< up and down [m/s^2]
-constexpr double kLevelOff = 3;       ///< time constant of reaching an altitude [s]
+constexpr double kAltitudeLag = 3;    ///< time constant of reaching an altitude [s]
 constexpr double kFlyingSpeed = 15;   ///< from here on the wind carries an aircraft wholly [m/s]
 constexpr double kLeastForward = 10;  ///< slower, a climb does not raise the nose more [m/s]
 
@@ -58,7 +58,7 @@ void Vehicle::steer(double dt) {
 }
 
 void Vehicle::climb(double dt) {
-  const double wanted = std::clamp((legs_.front().altitude - altitude_) / kLevelOff,
+  const double wanted = std::clamp((legs_.front().altitude - altitude_) / kAltitudeLag,
                                    -style_.climb_rate, style_.climb_rate);
   const double before = climb_;
   climb_ = toward(climb_, wanted, kVertical * dt);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 #include "foucault/geodesy/local_frame.h"
 
@@ -29,6 +30,27 @@ TEST(GnssSimulator, AntennaIsOneLeverArmAway) {
     // Geodetic coordinates and back: a few nm.
     EXPECT_LT((arm_n - motion.q_n_v * options.lever_arm_m).norm(), 2e-8);
     EXPECT_LT((options.q_v_b() * fix.p_b_a - options.lever_arm_m).norm(), 1e-14);
+  }
+}
+
+TEST(GnssSimulator, LeverArmErrorMovesTheAntennaAndNotWhatIsTold) {
+  ScenarioOptions options;
+  options.duration_s = 100;
+  options.gnss_noise = false;
+  options.gnss_velocity_sigma_m_s = 0.03;
+  options.mounting_deg = {10, -20, 130};
+  const Trajectory truth = make_trajectory(options);
+  ScenarioOptions wrong = options, other = options;
+  wrong.lever_arm_error_m = {0.05, -0.03, 0.2};
+  other.lever_arm_m += wrong.lever_arm_error_m;
+  for (double t = 0; t < 100; t += 3.3) {
+    const GnssFix fix = fix_at(truth, wrong, t);
+    const GnssFix moved = fix_at(truth, other, t);
+    EXPECT_EQ(fix.p_b_a, fix_at(truth, options, t).p_b_a);
+    EXPECT_EQ(fix.antenna.latitude, moved.antenna.latitude);
+    EXPECT_EQ(fix.antenna.longitude, moved.antenna.longitude);
+    EXPECT_EQ(fix.antenna.height, moved.antenna.height);
+    EXPECT_EQ(*fix.velocity_n, *moved.velocity_n);
   }
 }
 
@@ -77,6 +99,36 @@ TEST(GnssSimulator, NoiseIsAsReported) {
   EXPECT_LT(mean.cwiseAbs().maxCoeff(), 0.03);
   EXPECT_LT((square - Eigen::Vector3d::Ones()).cwiseAbs().maxCoeff(), 0.04);
   EXPECT_NEAR(velocity_square, 0.01, 0.0004);
+}
+
+// Half white, 1.5 of Gauss-Markov noise: variance 0.25 + 2.25, correlation after k fixes 2.25/2.5
+// e^(-k/20). 40000 fixes of three axes are 3000 independent ones of tau 20: 2.6 % of a variance.
+TEST(GnssSimulator, ColouredNoiseHasItsSigmaAndCorrelation) {
+  ScenarioOptions options;
+  options.name = "static";
+  options.duration_s = 10;
+  options.gnss_white_sigma = 0.5;
+  options.gnss_coloured_sigma = 1.5;
+  options.gnss_coloured_tau_s = 40;
+  options.lever_arm_m.setZero();
+  const Motion motion = make_trajectory(options).at(5);
+  const geodesy::LocalFrame frame(motion.position);
+  GnssSimulator simulator(options);
+  std::vector<Eigen::Vector3d> noise;
+  for (int i = 0; i < 40000; ++i) {
+    const GnssFix fix = simulator.measure(motion, i, 2 * i);
+    noise.push_back(frame.to_local(fix.antenna).cwiseQuotient(options.gnss_sigma_m));
+    EXPECT_TRUE(fix.position_covariance.diagonal().cwiseSqrt().isApprox(options.gnss_sigma_m));
+  }
+  const auto covariance = [&](std::size_t lag) {
+    double sum = 0;
+    for (std::size_t i = lag; i < noise.size(); ++i) sum += noise[i].dot(noise[i - lag]) / 3;
+    return sum / static_cast<double>(noise.size() - lag);
+  };
+  EXPECT_NEAR(covariance(0), 2.5, 0.25);
+  EXPECT_NEAR(covariance(0) - covariance(1), 0.25 + 2.25 * (1 - std::exp(-0.05)), 0.02);
+  EXPECT_NEAR(covariance(20), 2.25 * std::exp(-1), 0.25);
+  EXPECT_NEAR(covariance(200), 0, 0.25);
 }
 
 TEST(GnssSimulator, ReportsTheQualityThatItIsTold) {

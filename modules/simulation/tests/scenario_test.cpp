@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "foucault/core/constants.h"
 #include "foucault/core/error.h"
@@ -72,6 +73,155 @@ TEST(Scenario, CityIsACarInACity) {
     EXPECT_LT(s.max_height, options.height_m + 16);
     EXPECT_LT(s.max_side_slip, 0.6 * kDegree);
   }
+}
+
+/// Lateral velocity of the point at wheel_lever_arm_m, and what goes with it, where the car drives.
+struct Sideways {
+  std::vector<double> velocity;      ///< to the right in v [m/s]
+  std::vector<double> imu_velocity;  ///< the same of the IMU
+  std::vector<double> speed;         ///< [m/s]
+  std::vector<double> lateral;       ///< acceleration to the right [m/s^2]
+};
+
+Sideways sideways(const ScenarioOptions& options, double dt) {
+  const Trajectory truth = make_trajectory(options);
+  Sideways s;
+  for (double t = options.rest_s; t < options.duration_s; t += dt) {
+    const Motion motion = truth.at(t);
+    const Eigen::Vector3d v_v =
+        motion.q_n_v.conjugate() * point_velocity_n(motion, options.wheel_lever_arm_m);
+    if (v_v.x() < 4) continue;
+    s.velocity.push_back(v_v.y());
+    s.imu_velocity.push_back((motion.q_n_v.conjugate() * motion.velocity_n).y());
+    s.speed.push_back(v_v.x());
+    s.lateral.push_back(v_v.x() * motion.omega_iv_v.z());
+  }
+  return s;
+}
+
+double rms(const std::vector<double>& values) {
+  double sum = 0;
+  for (const double value : values) sum += value * value;
+  return std::sqrt(sum / static_cast<double>(values.size()));
+}
+
+double farthest_from_zero(const std::vector<double>& values) {
+  double farthest = 0;
+  for (const double value : values) farthest = std::max(farthest, std::abs(value));
+  return farthest;
+}
+
+// What is left is the splines': 0.125 s^2 times acceleration and yaw rate (scenario.h).
+TEST(Scenario, PointAtTheWheelsDoesNotSlip) {
+  for (const Eigen::Vector3d& arm :
+       {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(-1.5, 0.3, 0.6), Eigen::Vector3d(2, 0, -1)}) {
+    ScenarioOptions options;
+    options.wheel_lever_arm_m = arm;
+    const Sideways city = sideways(options, 0.1);
+    EXPECT_LT(rms(city.velocity), 4e-3);
+    EXPECT_LT(farthest_from_zero(city.velocity), 0.05);
+    options.name = "motorway";
+    EXPECT_LT(farthest_from_zero(sideways(options, 0.1).velocity), 0.004);
+    // The IMU ahead of it or behind is moved sideways by a yaw rate of up to 0.5 rad/s.
+    EXPECT_GT(farthest_from_zero(city.imu_velocity), 0.35 * std::abs(arm.x()));
+  }
+}
+
+// Ten trips of 1400 s are 350 independent values of tau 20: 7.5 % of a variance.
+TEST(Scenario, SlipIsGaussMarkovAndLeavesThePathAsItIs) {
+  double square = 0, product = 0;
+  std::size_t count = 0;
+  for (int seed = 1; seed <= 10; ++seed) {
+    ScenarioOptions options;
+    options.name = "motorway";  // does not stop: samples are evenly spaced
+    options.seed = seed;
+    const Motion straight = make_trajectory(options).at(1000);
+    options.slip_sigma_m_s = 0.1;
+    options.slip_tau_s = 20;
+    EXPECT_EQ(make_trajectory(options).at(1000).p_e, straight.p_e);
+    const std::vector<double> slip = sideways(options, 1).velocity;
+    for (std::size_t i = 20; i < slip.size(); ++i) {
+      square += slip[i] * slip[i];
+      product += slip[i] * slip[i - 20];
+      ++count;
+    }
+  }
+  EXPECT_NEAR(square / static_cast<double>(count) / 0.01, 1, 0.25);
+  EXPECT_NEAR(product / square, std::exp(-1), 0.15);
+}
+
+TEST(Scenario, SlipFollowsTheLateralAcceleration) {
+  ScenarioOptions options;
+  options.slip_rad_per_m_s2 = 0.004;
+  const Sideways s = sideways(options, 0.1);
+  std::vector<double> residual;
+  for (std::size_t i = 0; i < s.velocity.size(); ++i) {
+    residual.push_back(s.velocity[i] - 0.004 * s.lateral[i] * s.speed[i]);
+  }
+  EXPECT_GT(farthest_from_zero(s.velocity), 0.06);  // 3 m/s^2 at 6 m/s
+  EXPECT_LT(rms(residual), 0.15 * rms(s.velocity));
+}
+
+TEST(Scenario, SlipIsRefusedWhereNothingFollowsIt) {
+  ScenarioOptions options;
+  options.name = "train";
+  options.slip_sigma_m_s = 0.1;
+  EXPECT_THROW(make_trajectory(options), UsageError);
+}
+
+/// Lengths of exact standstills after the rest, all within the recording [s].
+std::vector<double> standstills(const ScenarioOptions& options) {
+  const Trajectory truth = make_trajectory(options);
+  std::vector<double> lengths;
+  double standing = 0;
+  for (double t = options.rest_s + 10; t < options.duration_s; t += 0.05) {
+    if (truth.at(t).velocity_n.norm() == 0) {
+      standing += 0.05;
+    } else if (standing > 0) {
+      lengths.push_back(standing);
+      standing = 0;
+    }
+  }
+  return lengths;
+}
+
+TEST(Scenario, CityStandsStillAtItsLights) {
+  for (int seed = 1; seed <= 5; ++seed) {
+    ScenarioOptions options;
+    options.seed = seed;
+    const std::vector<double> lengths = standstills(options);
+    EXPECT_GE(lengths.size(), 4u) << seed;
+    for (const double length : lengths) {
+      EXPECT_GE(length, 2.9) << seed;  // 5 s less what the splines smooth
+      EXPECT_LE(length, 30.1) << seed;
+    }
+  }
+}
+
+/// Largest vertical vibration within a second [m/s^2].
+double vibration(const Trajectory& vibrating, const Trajectory& quiet, double from) {
+  std::vector<double> extra;
+  for (double t = from; t < from + 1; t += 0.0007) {
+    extra.push_back((vibrating.at(t).f_v - quiet.at(t).f_v).z());
+  }
+  return farthest_from_zero(extra);
+}
+
+TEST(Scenario, VibratesWhereItStandsAndMoreWhereItDrives) {
+  ScenarioOptions options;
+  options.name = "motorway";
+  options.duration_s = 120;
+  const Trajectory quiet = make_trajectory(options);
+  ASSERT_NEAR(quiet.at(100).velocity_n.norm(), 30, 3);
+  options.vibration_m_s2 = 0.5;
+  const Trajectory even = make_trajectory(options);
+  options.vibration_growth = 3;
+  const Trajectory growing = make_trajectory(options);
+  EXPECT_NEAR(vibration(even, quiet, 20), 0.5, 0.01);
+  EXPECT_NEAR(vibration(even, quiet, 100), 0.5, 0.01);
+  EXPECT_NEAR(vibration(growing, quiet, 20), 0.5, 0.01);
+  const double speed = quiet.at(100.5).velocity_n.norm();
+  EXPECT_NEAR(vibration(growing, quiet, 100), 0.5 * (1 + 3 * speed / 15), 0.05);
 }
 
 TEST(Scenario, MotorwayGoesFarAndFast) {
@@ -199,6 +349,12 @@ TEST(ScenarioOptions, SurviveYaml) {
   options.gnss_phase_s = 0.3;
   options.skip_s = 12;
   options.gnss_quality = "single";
+  options.mounting_error_deg = {0.5, 2, -3};
+  options.cross_axis_sigma_ppm = 800;
+  options.gnss_coloured_sigma = 1.5;
+  options.gnss_time_offset_s = -0.05;
+  options.wheel_lever_arm_m = {-1, 0, 1};
+  options.slip_rad_per_m_s2 = 0.004;
   ScenarioOptions copy;
   load_config_text(dump_config(options), "copy", copy);
   EXPECT_EQ(dump_config(copy), dump_config(options));

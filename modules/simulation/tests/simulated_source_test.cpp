@@ -3,10 +3,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "foucault/core/error.h"
 #include "foucault/core/time.h"
+#include "foucault/geodesy/local_frame.h"
 
 namespace foucault::simulation {
 namespace {
@@ -76,6 +79,137 @@ TEST(SimulatedSource, StampsDoNotDrift) {
   const StampSequence thirds(0, 3, 0);
   EXPECT_EQ(thirds.at(1), 333'333'300);
   EXPECT_EQ(thirds.at(3'000'000), 1'000'000'000'000'000);
+}
+
+TEST(SimulatedSource, WheelSpeedsStandInTheirOrder) {
+  ScenarioOptions options = short_trip();
+  options.wheel_rate_hz = 10;
+  const std::vector<Measurement> all = record(options, kNoise);
+  EXPECT_EQ(only<WheelSpeed>(all).size(), 601u);
+  for (std::size_t i = 1; i < all.size(); ++i) {
+    EXPECT_LE(stamp(all[i - 1]), stamp(all[i]));
+    if (stamp(all[i - 1]) == stamp(all[i])) {
+      EXPECT_LE(all[i - 1].index(), all[i].index());
+    }
+  }
+  EXPECT_TRUE(only<WheelSpeed>(record(short_trip(), kNoise)).empty());
+}
+
+// A vibration of 10 Hz would stand still under samples of 10 Hz, as a speed of 16 mm/s.
+TEST(SimulatedSource, WheelSpeedsAreOfTheTruthWithoutItsVibration) {
+  ScenarioOptions options = short_trip();
+  options.wheel_rate_hz = 10;
+  const Trajectory truth = make_trajectory(options);
+  options.vibration_m_s2 = 1;
+  options.vibration_hz = 10;
+  for (const WheelSpeed& speed : only<WheelSpeed>(record(options, kNoise))) {
+    const Motion motion = truth.at(seconds_between(options.start_ns(), speed.t_ns));
+    const double forward = (motion.q_n_v.conjugate() * motion.velocity_n).x();
+    EXPECT_NEAR(speed.forward, forward, std::abs(forward) < 2e-3 ? 1e-3 : 1e-12);
+  }
+}
+
+TEST(SimulatedSource, FixesAreOfBeforeTheirStamps) {
+  ScenarioOptions options = short_trip();
+  options.rest_s = 5;
+  options.gnss_noise = false;
+  options.gnss_time_offset_s = 0.05;
+  options.gnss_time_drift_ppm = 1000;
+  const Trajectory truth = make_trajectory(options);
+  const auto fixes = only<GnssFix>(record(options, kNoise));
+  EXPECT_EQ(fixes.size(), 60u);  // what is stamped with the start would be of before it
+  double farthest = 0;
+  for (const GnssFix& fix : fixes) {
+    const double t = seconds_between(options.start_ns(), fix.t_ns);
+    const Motion motion = truth.at(t - 0.05 - 0.001 * t);
+    const Eigen::Vector3d arm_n = geodesy::LocalFrame(motion.position).to_local(fix.antenna);
+    EXPECT_LT((arm_n - motion.q_n_v * options.lever_arm_m).norm(), 2e-8);
+    const geodesy::LocalFrame frame(truth.at(t).position);
+    farthest = std::max(farthest, frame.to_local(motion.position).norm());
+  }
+  EXPECT_GT(farthest, 0.5);  // 10 m/s, 0.05 to 0.11 s
+}
+
+TEST(SimulatedSource, MountingErrorTurnsTheImuAndNotWhatIsTold) {
+  ScenarioOptions options = short_trip();
+  options.mounting_deg = {3, 4, 90};
+  ScenarioOptions wrong = options, turned = options;
+  wrong.mounting_error_deg = {0.5, 2, -3};
+  turned.mounting_deg += wrong.mounting_error_deg;
+  SimulatedSource source(wrong, kNoise);
+  EXPECT_TRUE(source.mounting().q_v_b.isApprox(options.q_v_b()));
+  const Eigen::Quaterniond q_n_v = source.trajectory().at(50).q_n_v;
+  const Eigen::Quaterniond q_n_b = source.truth(options.start_ns() + 50'000'000'000).q_n_b;
+  EXPECT_LT(q_n_b.angularDistance(q_n_v * turned.q_v_b()), 1e-7);
+  const std::vector<Measurement> all = record(wrong, kNoise);
+  const auto wrong_increments = only<ImuIncrement>(all);
+  const auto turned_increments = only<ImuIncrement>(record(turned, kNoise));
+  EXPECT_EQ(wrong_increments.back().dtheta_b, turned_increments.back().dtheta_b);
+  EXPECT_EQ(wrong_increments.back().dvel_b, turned_increments.back().dvel_b);
+  const GnssFix fix = only<GnssFix>(all).back(),
+                told = only<GnssFix>(record(options, kNoise)).back();
+  EXPECT_EQ(fix.p_b_a, told.p_b_a);
+  EXPECT_EQ(fix.antenna.latitude, told.antenna.latitude);
+}
+
+TEST(SimulatedSource, RectificationFollowsTheSpeed) {
+  ScenarioOptions options = short_trip();
+  const auto without = only<ImuIncrement>(record(options, kNoise));
+  options.vibration_rectification_m_s2 = 2e-3;
+  const Trajectory truth = make_trajectory(options);
+  const auto with = only<ImuIncrement>(record(options, kNoise));
+  for (std::size_t i = 0; i < with.size(); i += 100) {
+    const double t = seconds_between(options.start_ns(), with[i].t_end_ns) - 0.0025;
+    const double speed = truth.at(t).velocity_n.norm();
+    const Eigen::Vector3d bias = (with[i].dvel_b - without[i].dvel_b) / with[i].dt();
+    const double expected = 2e-3 * speed * speed / 225;
+    EXPECT_LT((bias.cwiseAbs().array() - expected).abs().maxCoeff(), 1e-8) << t;
+  }
+  EXPECT_GT(truth.at(59).velocity_n.norm(), 5);
+}
+
+TEST(SimulatedSource, CrossAxisTermsAreThoseOfTheOption) {
+  ScenarioOptions options = short_trip();
+  options.duration_s = 50;
+  SimulatedSource exact(options, imu::ImuNoise{});
+  options.cross_axis_sigma_ppm = 1000;
+  ImuFlaws flaws;
+  flaws.cross_axis_sigma = 1e-3;
+  ImuErrors errors(imu::ImuNoise{}, flaws, options.seed);
+  SimulatedSource source(options, imu::ImuNoise{});
+  while (std::optional<Measurement> m = source.next()) {
+    const Measurement without = *exact.next();
+    const ImuIncrement* increment = std::get_if<ImuIncrement>(&*m);
+    if (!increment) continue;
+    const ImuIncrement expected = errors.apply(std::get<ImuIncrement>(without));
+    ASSERT_EQ(increment->dtheta_b, expected.dtheta_b);
+    ASSERT_EQ(increment->dvel_b, expected.dvel_b);
+  }
+}
+
+TEST(SimulatedSource, ErrorsOfOneSensorLeaveTheOthersAsTheyAre) {
+  const std::vector<Measurement> plain = record(short_trip(), kNoise);
+  ScenarioOptions options = short_trip();
+  options.lever_arm_error_m = {0.1, 0.1, 0.1};
+  options.gnss_coloured_sigma = 1;
+  options.gnss_time_offset_s = -0.05;
+  options.wheel_rate_hz = 10;
+  options.wheel_sigma_m_s = 0.1;
+  const auto imu = only<ImuIncrement>(plain),
+             same_imu = only<ImuIncrement>(record(options, kNoise));
+  for (std::size_t i = 0; i < imu.size(); ++i) {
+    ASSERT_EQ(imu[i].dtheta_b, same_imu[i].dtheta_b);
+    ASSERT_EQ(imu[i].dvel_b, same_imu[i].dvel_b);
+  }
+  options = short_trip();
+  options.cross_axis_sigma_ppm = 1000;
+  options.vibration_rectification_m_s2 = 1e-3;
+  options.wheel_rate_hz = 10;
+  const auto fixes = only<GnssFix>(plain), same_fixes = only<GnssFix>(record(options, kNoise));
+  for (std::size_t i = 0; i < fixes.size(); ++i) {
+    ASSERT_EQ(fixes[i].antenna.latitude, same_fixes[i].antenna.latitude);
+    ASSERT_EQ(fixes[i].antenna.height, same_fixes[i].antenna.height);
+  }
 }
 
 TEST(SimulatedSource, SeedsReproduce) {

@@ -55,6 +55,7 @@ class TrajectoryOf : public ::testing::TestWithParam<Case> {
     options.vibration_m_s2 = GetParam().vibration_m_s2;
     options.vibration_deg = GetParam().vibration_deg;
     options.vibration_hz = 5;
+    options.vibration_growth = 0.5;
     options.duration_s = 900;
     return make_trajectory(options);
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <cstdint>
 #include <random>
 
@@ -24,7 +25,12 @@ enum class RandomStream : uint32_t {
   gnss_position,
   gnss_velocity,
   faults,
-  start
+  start,
+  cross_axis,
+  rectification,
+  gnss_coloured,
+  wheel,
+  slip
 };
 
 /// Reproducible draws: the same seed and stream give the same numbers.
@@ -43,5 +49,12 @@ class Draws {
   std::mt19937_64 engine_;
   std::normal_distribution<double> normal_;
 };
+
+/// A first-order Gauss-Markov process of sigma 1 after `elapsed` time constants, discretized
+/// exactly; `draw` is normal. T: a number or an Eigen vector.
+template <class T>
+T next_markov(const T& value, double elapsed, const T& draw) {
+  return T(std::exp(-elapsed) * value + std::sqrt(-std::expm1(-2 * elapsed)) * draw);
+}
 
 }  // namespace foucault::simulation

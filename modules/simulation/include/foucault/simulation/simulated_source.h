@@ -6,6 +6,7 @@
 #include "foucault/simulation/gnss_simulator.h"
 #include "foucault/simulation/imu_simulator.h"
 #include "foucault/simulation/scenario.h"
+#include "foucault/simulation/wheel_simulator.h"
 #include "foucault/state/interfaces.h"
 #include "foucault/state/result.h"
 
@@ -25,9 +26,10 @@ class StampSequence {
   double phase_s_;
 };
 
-/// A simulated recording as a Source: GnssFix, ReferencePose (the truth) and ImuIncrement in the
-/// order of Measurement, from the start to duration_s after it. Stamps are multiples of 100 ns, so
-/// that a rawlog keeps them exactly.
+/// A simulated recording as a Source: GnssFix, WheelSpeed, ReferencePose (the truth) and
+/// ImuIncrement in the order of Measurement, from the start to duration_s after it. Stamps are
+/// multiples of 100 ns, so that a rawlog keeps them exactly. Fixes that a time offset puts before
+/// the start or after the end are left out.
 /// Memory: the control points of the trajectory, 100 bytes to 1 kB a second, and no more.
 class SimulatedSource : public state::Source {
  public:
@@ -35,6 +37,7 @@ class SimulatedSource : public state::Source {
   SimulatedSource(const ScenarioOptions& options, const imu::ImuNoise& noise);
 
   std::optional<Measurement> next() override;
+  /// As told; truth() knows the true one.
   const state::Mounting& mounting() const override { return mounting_; }
   double progress() const override;
 
@@ -55,19 +58,25 @@ class SimulatedSource : public state::Source {
   };
 
   Motion motion_at(int64_t t_ns) const;
-  GnssFix next_fix();
+  /// None where the time offset leads out of the recording.
+  std::optional<GnssFix> next_fix();
+  WheelSpeed next_wheel_speed();
   ReferencePose next_reference();
   /// None inside a gap, or when the recording is over.
   std::optional<ImuIncrement> next_increment();
+  /// For the accelerometers' rectification [m/s]; 0 without it.
+  double rectifying_speed(int64_t t_ns) const;
   bool in_gap(const ImuIncrement& increment) const;
 
   ScenarioOptions options_;
   int64_t start_ns_, end_ns_;
   state::Mounting mounting_;
+  Eigen::Quaterniond true_q_v_b_;
   Trajectory trajectory_;
   GnssSimulator gnss_;
+  WheelSimulator wheels_;
   ImuErrors errors_;
-  Stream fixes_, references_, increments_;
+  Stream fixes_, wheel_speeds_, references_, increments_;
   int64_t now_ns_;
 };
 

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <optional>
 
 #include "foucault/core/measurement.h"
 #include "foucault/simulation/spline.h"
@@ -19,12 +20,21 @@ struct Motion {
   Eigen::Vector3d f_v;         ///< specific force [m/s^2]
 };
 
+/// Velocity relative to the Earth, in the NED of the IMU, of a point of the vehicle [m/s].
+/// p_v_x: IMU to the point, in v [m].
+Eigen::Vector3d point_velocity_n(const Motion& motion, const Eigen::Vector3d& p_v_x);
+
+/// For which options tell what of a vibration goes by the speed [m/s].
+inline constexpr double kVibrationSpeed = 15;
+
 /// A vibration on top of the motion: sines of one frequency, a quarter of a period apart from axis
-/// to axis, so that the angles cone and position and angles scull.
+/// to axis, so that the angles cone and position and angles scull. It may grow with time.
 struct Vibration {
   double frequency_hz = 0;
   double position_amplitude = 0;  ///< each axis of w [m]
   double angle_amplitude = 0;     ///< roll, pitch and heading [rad]
+  /// x: both amplitudes are 1 + so many times as large.
+  std::optional<QuinticSpline> growth;
 };
 
 /// Closed-form motion over the rotating WGS-84 ellipsoid, C4 in position and attitude: splines
@@ -38,16 +48,21 @@ class Trajectory {
  public:
   /// `position_w` [m]; `euler` (roll, pitch, heading) [rad], the heading without jumps.
   Trajectory(const Geodetic& origin, QuinticSpline position_w, QuinticSpline euler,
-             const Vibration& vibration = {});
+             Vibration vibration = {});
 
   /// t [s] since the start, in [0, duration()].
   Motion at(double t) const;
+
+  /// The same without the vibration, which is of the IMU and its mount, not of the wheels.
+  Motion steady_at(double t) const;
 
   double duration() const { return position_w_.duration(); }  ///< [s]
 
  private:
   QuinticSpline::Sample position_at(double t) const;
   QuinticSpline::Sample euler_at(double t) const;
+  void vibrate(QuinticSpline::Sample& sample, double amplitude, double t) const;
+  Motion motion_of(const QuinticSpline::Sample& position, const QuinticSpline::Sample& euler) const;
 
   Eigen::Vector3d origin_e_;
   Eigen::Matrix3d R_e_w_;
