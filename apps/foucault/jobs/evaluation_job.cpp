@@ -16,7 +16,7 @@
 #include "foucault/core/units.h"
 #include "foucault/page/report_page.h"
 #include "foucault/rawlog/rawlog_source.h"
-#include "jobs/time_offset.h"
+#include "jobs/survey.h"
 #include "methods.h"
 
 namespace foucault::app {
@@ -206,16 +206,9 @@ namespace {
 /// With what the logs say, once the settings are known to be right.
 std::vector<EvaluationCase> with_notes(std::vector<EvaluationCase> cases, Console& console) {
   for (const EvaluationCase& c : cases) experiment_runs(c);
-  std::map<std::string, double> offsets;  // they are the same for all methods
+  Surveyor surveyor(console);  // a log is the same for all methods
   for (EvaluationCase& c : cases) {
-    c.settings = settings_for(c.log, c.settings);
-    const auto found = offsets.find(c.log);
-    if (found == offsets.end()) {
-      c.settings = with_time_offset(c.log, c.settings, console);
-      offsets.emplace(c.log, c.settings.calibrate.time_offset_s);
-    } else {
-      c.settings.calibrate.time_offset_s = c.settings.rawlog.fix_delay_s = found->second;
-    }
+    c.settings = surveyor.complete(c.log, settings_for(c.log, c.settings));
     if (c.imu == imu::ImuOptions::kAsRecorded) c.imu = c.settings.imu.preset;
   }
   return cases;

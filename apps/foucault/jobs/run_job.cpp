@@ -12,7 +12,7 @@
 #include "foucault/export/text_file.h"
 #include "foucault/rawlog/rawlog_source.h"
 #include "jobs/run_output.h"
-#include "jobs/time_offset.h"
+#include "jobs/survey.h"
 #include "methods.h"
 #include "output_directory.h"
 #include "pages/run_page.h"
@@ -78,7 +78,15 @@ content::RunLabels labels(const RunJob& job, const std::string& config) {
           job.command_line, config};
 }
 
-/// As users know them: the whole offset, the whole lever arm along forward, right, down.
+void turn_to_vehicle(const state::SlowBlock& arm, const state::Mounting& mounting,
+                     state::Epoch& epoch) {
+  const Eigen::Matrix3d R_v_b = mounting.q_v_b.toRotationMatrix();
+  epoch.slow.segment<3>(arm.index) = (R_v_b * epoch.slow.segment<3>(arm.index)).eval();
+  state::part(epoch.covariance, arm, arm) =
+      (R_v_b * state::part(epoch.covariance, arm, arm) * R_v_b.transpose()).eval();
+}
+
+/// As users know them: the whole offset, arms along forward, right, down.
 std::vector<evaluation::CalibratedBlock> calibration(const state::Epoch& epoch,
                                                      const Settings& settings,
                                                      const rawlog::RawlogSource& source) {
@@ -88,11 +96,11 @@ std::vector<evaluation::CalibratedBlock> calibration(const state::Epoch& epoch,
     whole.slow[offset->index] += settings.calibrate.time_offset_s;
   }
   if (const state::SlowBlock* arm = layout.find(state::block::lever_arm)) {
-    const Eigen::Matrix3d R_v_b = source.mounting().q_v_b.toRotationMatrix();
-    const Eigen::Vector3d arm_b = source.lever_arm() + whole.slow.segment<3>(arm->index);
-    whole.slow.segment<3>(arm->index) = R_v_b * arm_b;
-    state::part(whole.covariance, *arm, *arm) =
-        (R_v_b * state::part(epoch.covariance, *arm, *arm) * R_v_b.transpose()).eval();
+    whole.slow.segment<3>(arm->index) += source.lever_arm();
+    turn_to_vehicle(*arm, source.mounting(), whole);
+  }
+  if (const state::SlowBlock* point = layout.find(state::block::wheel_lever_arm)) {
+    turn_to_vehicle(*point, source.mounting(), whole);
   }
   return evaluation::calibrated_blocks(whole, layout);
 }
@@ -113,7 +121,7 @@ RunResult run_into(const RunJob& job, const std::filesystem::path& folder, Conso
   std::optional<Profile> profile;
   if (job.profile) profile.emplace().add(Stage::start, process_cpu_s());
   const ResourceMeter meter;
-  Settings settings = with_time_offset(job.log, settings_for(job.log, job.settings), console);
+  Settings settings = Surveyor(console).complete(job.log, settings_for(job.log, job.settings));
   const std::string config = dump_config(settings);
   const Method& method = find_method(job.method);
 
