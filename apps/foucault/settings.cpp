@@ -21,6 +21,12 @@ navigation::EpochRate OutputOptions::epoch_rate() const {
   return rate == "imu" ? navigation::EpochRate::imu : navigation::EpochRate::epochs;
 }
 
+Settings Settings::of_paper() {
+  Settings settings;
+  settings.aids.mode = settings.calibrate.mode = "none";
+  return settings;
+}
+
 void Settings::fields(ConfigFields& f) {
   f.section("imu", imu, "noise of the IMU, and how its samples are to be read");
   f.section("alignment", alignment, "initial attitude");

@@ -50,6 +50,9 @@ class Settings : public Configurable {
   evaluation::OutageOptions outages;  ///< for evaluate and tune
   OutputOptions output;
 
+  /// As in the paper: position fixes alone, 15 states.
+  static Settings of_paper();
+
   void fields(ConfigFields& f) override;
 };
 

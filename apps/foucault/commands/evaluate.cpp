@@ -17,13 +17,16 @@
 namespace foucault::app {
 namespace {
 
+const std::vector<std::string> kPaperMethods{"ekf", "refined", "rough"};
+
 struct EvaluateOptions {
   std::vector<std::string> logs;
-  std::vector<std::string> methods{"ekf", "refined", "rough"};
+  std::vector<std::string> methods = kPaperMethods;
   ConfigArguments config;
   int jobs = evaluation::processor_count();
   std::string out;
   bool no_report = false;
+  bool paper = false;
 };
 
 EvaluationLabels labels(Settings settings, const std::string& command_line) {
@@ -37,9 +40,10 @@ EvaluationLabels labels(Settings settings, const std::string& command_line) {
 }
 
 void evaluate_logs(const EvaluateOptions& options, Call& call) {
-  Settings settings;
+  Settings settings = options.paper ? Settings::of_paper() : Settings();
   apply(options.config, settings);
-  const std::vector<EvaluationCase> cases = cross(options.logs, options.methods, settings);
+  const std::vector<std::string>& methods = options.paper ? kPaperMethods : options.methods;
+  const std::vector<EvaluationCase> cases = cross(options.logs, methods, settings);
   OutputDirectory directory(options.out);
   Evaluation evaluation = evaluate_what_is_there(cases, options.jobs, call.console);
   const evaluation::EvaluationSummary summary(std::move(evaluation.results));
@@ -61,6 +65,9 @@ void evaluate_logs(const EvaluateOptions& options, Call& call) {
 std::function<void(Call&)> declare_evaluate(CLI::App& app) {
   const auto o = std::make_shared<EvaluateOptions>();
   app.add_option("LOG", o->logs, "Rawlogs")->required();
+  app.add_flag("--paper", o->paper,
+               "The paper's comparison: ekf, refined and rough with 15 states and position fixes "
+               "alone (aids.mode and calibrate.mode none)");
   app.add_option("--methods", o->methods, fmt::format("Of {}", method_names()))
       ->delimiter(',')
       ->expected(1)

@@ -26,6 +26,7 @@ void write_demo_recordings(const laboratory::PaperExperiment& experiment,
 RunJob demo_run(const laboratory::PaperExperiment& experiment,
                 const std::filesystem::path& folder) {
   RunJob job;
+  job.settings = Settings::of_paper();
   job.settings.imu.preset = "ADIS16465";
   job.log = path_of(
       folder, laboratory::recording_name(job.settings.imu.preset, experiment.trips_s.front()));
@@ -36,7 +37,7 @@ std::vector<EvaluationCase> evaluation_cases(const std::vector<laboratory::Paper
                                              const std::filesystem::path& folder) {
   std::vector<EvaluationCase> all;
   for (const laboratory::PaperCase& what : cases) {
-    Settings settings;
+    Settings settings = Settings::of_paper();
     settings.imu.preset = what.imu;
     settings.gnss.gate_false_alarm = 0;  // nor has the paper a gate; there are no outliers here
     if (what.noise) {

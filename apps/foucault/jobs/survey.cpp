@@ -112,12 +112,6 @@ bool Surveyor::raise_noise(const calibration::RecordedWay& way, Settings& settin
   const calibration::NoiseFit fit =
       calibration::raised_noise(way, settings.imu.noise(), settings.calibrate.layout());
   console_.clear_progress();
-  if (getenv("FDBG"))
-    fprintf(stderr, "NOISE gain %.1f tried %d arw %.3g vrw %.3g gb %.3g ab %.3g\n", fit.gain,
-            fit.tried, *settings.imu.with(fit.noise).arw_deg_sqrt_h,
-            *settings.imu.with(fit.noise).vrw_m_s_sqrt_h,
-            *settings.imu.with(fit.noise).gyro_bias_deg_h,
-            *settings.imu.with(fit.noise).accel_bias_mgal);
   if (fit.gain == 0) return false;
   found.noise = fit.noise;
   settings.imu = settings.imu.with(fit.noise);

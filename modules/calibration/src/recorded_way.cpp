@@ -31,11 +31,11 @@ void WayRecorder::epoch(const state::Epoch& epoch) {
 
 void WayRecorder::add(const Measurement& measurement) {
   if (ended_) return;
-  if (const auto* increment = std::get_if<ImuIncrement>(&measurement)) add(*increment);
+  if (const auto* increment = std::get_if<ImuIncrement>(&measurement)) add_increment(*increment);
   if (const auto* fix = std::get_if<GnssFix>(&measurement)) fixes_.push_back(*fix);
 }
 
-void WayRecorder::add(const ImuIncrement& increment) {
+void WayRecorder::add_increment(const ImuIncrement& increment) {
   if (increment.dt() <= 0 || !is_finite(increment)) return;
   if (increments_.empty()) return increments_.push_back(increment);
   if (increment.t_begin_ns < increments_.back().t_end_ns) return;

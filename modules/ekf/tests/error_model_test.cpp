@@ -12,7 +12,8 @@ using Vector = state::StateVector;
 using test::Trip;
 using test::TripWindow;
 
-constexpr int kSize = state::kNodeSize + 6;  // with scale factors
+constexpr int kSlow = 15;  // scale factors and cross-axis terms
+constexpr int kSize = state::kNodeSize + kSlow;
 
 /// Units in which errors of a car's MEMS navigation are of order one.
 Vector natural_units() {
@@ -22,7 +23,7 @@ Vector natural_units() {
   state::part(units, state::block::attitude).setConstant(1e-2);    // rad
   state::part(units, state::block::gyro_bias).setConstant(1e-3);   // rad/s
   state::part(units, state::block::accel_bias).setConstant(1e-2);  // m/s^2
-  units.tail<6>().setConstant(1e-2);
+  units.tail<kSlow>().setConstant(1e-2);
   return units;
 }
 
@@ -35,7 +36,9 @@ state::Layout with_scale_factors() {
   constexpr double kForever = 1e12;
   return state::Layout()
       .add(state::block::gyro_scale, 0, kForever)
-      .add(state::block::accel_scale, 0, kForever);
+      .add(state::block::accel_scale, 0, kForever)
+      .add(state::block::gyro_cross_axis, 0, kForever)
+      .add(state::block::accel_cross_axis, 0, kForever);
 }
 
 ImuIncrement compensated(const ImuIncrement& increment, const state::NavState& state) {
@@ -102,7 +105,7 @@ ekf::ProcessNoise with_scale_and_constant_biases() {
 /// The dynamics compared with differences of the mechanization that they linearize.
 void expect_transition_matches(const Trip& trip, double tolerance) {
   state::NavState begin = trip.truth(trip.begin_ns());
-  begin.slow = Eigen::VectorXd::Zero(6);
+  begin.slow = Eigen::VectorXd::Zero(kSlow);
   begin.bias = {{1e-3, -2e-3, 3e-3}, {0.02, -0.01, 0.03}};
   std::vector<ImuIncrement> measured = trip.increments();
   for (ImuIncrement& m : measured) {
@@ -136,7 +139,7 @@ TEST(ErrorModel, TransitionMatchesDifferencesInAnAirliner) {
 TEST(ErrorModel, ToleranceSeesCoriolisAndGravityGradient) {
   const Trip trip({"airliner", 700, 10, 100});
   state::NavState begin = trip.truth(trip.begin_ns());
-  begin.slow = Eigen::VectorXd::Zero(6);
+  begin.slow = Eigen::VectorXd::Zero(kSlow);
   const Matrix phi = in_natural_units(numerical_transition(begin, trip.increments()));
   EXPECT_GT(std::abs(phi(3, 4)), 10 * kTolerance) << "Coriolis";
   EXPECT_GT(std::abs(phi(5, 2)), 4 * kTolerance) << "gravity gradient";
@@ -147,7 +150,7 @@ TEST(ErrorModel, BoxminusInvertsBoxplus) {
   state::NavState state;
   state.position = {0.5, 3.14159265, 100};
   state.q_n_b = so3::exp({0.3, -1.2, 2.0});
-  state.slow = Eigen::VectorXd::Zero(6);
+  state.slow = Eigen::VectorXd::Zero(kSlow);
   Vector error(kSize);
   for (int i = 0; i < kSize / 3; ++i) error.segment<3>(3 * i) = test::draw3(rng);
   const Vector back = state::boxminus(state::boxplus(state, error), state);

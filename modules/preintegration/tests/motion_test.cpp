@@ -201,6 +201,20 @@ TEST(Motion, JacobiansAreDerivatives) {
     EXPECT_LT((m.J_x1 - J1).cwiseAbs().maxCoeff(), 2e-7) << "rotation " << rotation;
     EXPECT_LT((m.J_gyro_scale - J_gyro).cwiseAbs().maxCoeff(), 2e-7) << "rotation " << rotation;
     EXPECT_LT((m.J_accel_scale - J_accel).cwiseAbs().maxCoeff(), 2e-7) << "rotation " << rotation;
+    for (std::size_t i = 0; i < m.J_gyro_cross.size(); ++i) {
+      const NodeByAxis J_cross = numerical_jacobian<3>([&](const Vector3d& d) {
+        state::ImuScale moved = scale;
+        moved.gyro_cross.segment<3>(3 * static_cast<Eigen::Index>(i)) += d;
+        return residual(x0, x1, moved);
+      });
+      EXPECT_LT((m.J_gyro_cross[i] - J_cross).cwiseAbs().maxCoeff(), 2e-7) << i;
+    }
+    const NodeByAxis J_accel_cross = numerical_jacobian<3>([&](const Vector3d& d) {
+      state::ImuScale moved = scale;
+      moved.accel_cross += d;
+      return residual(x0, x1, moved);
+    });
+    EXPECT_LT((m.J_accel_cross - J_accel_cross).cwiseAbs().maxCoeff(), 2e-7);
     EXPECT_EQ(m.r, residual(x0, x1, scale));
   }
 }

@@ -219,6 +219,32 @@ TEST(Preintegrator, ScaleJacobiansAreDerivatives) {
   }
 }
 
+TEST(Preintegrator, CrossAxisJacobiansAreDerivatives) {
+  const std::vector<ImuIncrement> increments =
+      ClosedFormMotion(wuhan_earth()).increments(3, 4, 200);
+  state::ImuScale crossed = kScale;
+  crossed.gyro_cross << 0.01, -0.02, 0.015, -0.01, 0.02, -0.015;
+  crossed.accel_cross = {0.02, -0.01, 0.015};
+  for (const state::ImuScale& scale : {state::ImuScale{}, crossed}) {
+    const SensorErrors at{kBias, scale};
+    const Preintegration pre = preintegrate_at(increments, at);
+    for (std::size_t i = 0; i < pre.by_gyro_cross.size(); ++i) {
+      expect_derivatives(pre.by_gyro_cross[i], 5, [&](const Vector3d& d) {
+        SensorErrors shifted = at;
+        shifted.scale->gyro_cross.segment<3>(3 * static_cast<Eigen::Index>(i)) += d;
+        return preintegrate_at(increments, shifted);
+      });
+      EXPECT_GT(pre.by_gyro_cross[i].dq.norm(), 0.1) << i;
+    }
+    expect_derivatives(pre.by_accel_cross, 10, [&](const Vector3d& d) {
+      SensorErrors shifted = at;
+      shifted.scale->accel_cross += d;
+      return preintegrate_at(increments, shifted);
+    });
+    EXPECT_GT(pre.by_accel_cross.dv.norm(), 1);
+  }
+}
+
 TEST(Preintegrator, TheTrueScaleGivesBackTheDeltas) {
   const std::vector<ImuIncrement> ideal = ClosedFormMotion(wuhan_earth()).increments(3, 4, 200);
   const state::ImuScale scale{{1e-3, -1e-3, 1e-3}, {-1e-3, 1e-3, -1e-3}};
@@ -248,7 +274,8 @@ TEST(Preintegrator, AScaleOfZeroChangesNothingAndNoneHasNoJacobians) {
   EXPECT_EQ(zero.dq.coeffs(), none.dq.coeffs());
   EXPECT_EQ(zero.by_gyro_bias.dq, none.by_gyro_bias.dq);
   EXPECT_EQ(zero.covariance, none.covariance);
-  for (const DeltaJacobian& J : {none.by_gyro_scale, none.by_accel_scale})
+  for (const DeltaJacobian& J : {none.by_gyro_scale, none.by_accel_scale, none.by_gyro_cross[0],
+                                 none.by_gyro_cross[1], none.by_accel_cross})
     EXPECT_TRUE(J.dp.isZero(0) && J.dv.isZero(0) && J.dq.isZero(0));
 }
 

@@ -36,7 +36,7 @@ class WayRecorder {
   std::optional<RecordedWay> way() const;
 
  private:
-  void add(const ImuIncrement& increment);
+  void add_increment(const ImuIncrement& increment);
   void bridge(const ImuIncrement& next);
 
   std::optional<state::Epoch> start_;
