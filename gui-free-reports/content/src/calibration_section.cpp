@@ -1,0 +1,220 @@
+#include "calibration_section.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string_view>
+#include <utility>
+
+#include "foucault/core/constants.h"
+#include "foucault/plot/text.h"
+#include "run_panels.h"
+
+namespace foucault::content {
+
+using namespace plot;
+using namespace page;
+
+namespace {
+
+/// How a block is shown.
+struct BlockLook {
+  std::string_view name;
+  std::string title;
+  std::string unit;
+  double factor = 1;                   ///< from SI
+  std::vector<const char*> rows = {};  ///< empty: numbers
+};
+
+struct FigureLook {
+  const char* name;
+  const char* title;
+  std::vector<BlockLook> blocks;
+};
+
+const std::vector<const char*> kAlongVehicle{"forward", "right", "down"};
+
+std::vector<FigureLook> known_looks() {
+  constexpr double kPpm = 1e6, kCm = 100;
+  return {
+      {"calibration_arms",
+       "Calibration: lever arms",
+       {{"lever_arm", "Antenna", "cm", kCm, kAlongVehicle},
+        {"wheel_lever_arm", "Point without slip", "cm", kCm, kAlongVehicle}}},
+      {"calibration_vehicle",
+       "Calibration: mounting, wheels, time",
+       {{"mounting", "Mounting", "°", 1 / kDegree, {"pitch", "heading"}},
+        {"wheel_scale", "Wheel scale", "%", 100, {""}},
+        {"time_offset", "Time offset", "ms", 1000, {""}},
+        {"time_drift", "Drift of the time offset", "ppm", kPpm, {""}}}},
+      {"calibration_scales",
+       "Calibration: scale factors",
+       {{"gyro_scale", "Gyroscope", "ppm", kPpm, {"x", "y", "z"}},
+        {"accel_scale", "Accelerometer", "ppm", kPpm, {"x", "y", "z"}}}},
+      {"calibration_cross_axes",
+       "Calibration: cross-axis terms",
+       {{"gyro_cross_axis", "Gyroscope", "ppm", kPpm, {"xy", "yz", "zx", "xz", "yx", "zy"}},
+        {"accel_cross_axis", "Accelerometer", "ppm", kPpm, {"xy", "yz", "xz"}}}},
+  };
+}
+
+/// Blocks that have no look of their own are shown as they are.
+std::vector<FigureLook> figure_looks(const RunData& data) {
+  std::vector<FigureLook> looks = known_looks();
+  FigureLook other{"calibration_other", "Calibration: other blocks", {}};
+  for (const BlockHistory& history : data.blocks) {
+    const state::Block& block = history.slow.block;
+    const bool known = std::any_of(looks.begin(), looks.end(), [&](const FigureLook& look) {
+      return std::any_of(look.blocks.begin(), look.blocks.end(),
+                         [&](const BlockLook& b) { return b.name == block.name; });
+    });
+    if (!known)
+      other.blocks.push_back({block.name, std::string(block.name), std::string(block.unit)});
+  }
+  looks.push_back(std::move(other));
+  return looks;
+}
+
+/// One number of a block over time, in the unit that it is shown in.
+struct ShownRow {
+  std::string title;
+  std::string unit;
+  double prior = 0, prior_sigma = 0;
+  double last = 0, last_sigma = 0;
+  std::vector<double> t, value, sigma;
+
+  /// The recording has told at least something of it.
+  bool told() const { return last_sigma <= 0.7 * prior_sigma; }
+};
+
+std::vector<double> scaled(std::vector<double> values, double factor) {
+  for (double& value : values) value *= factor;
+  return values;
+}
+
+ShownRow shown_row(const BlockHistory& block, const BlockLook& look, Eigen::Index row) {
+  const auto i = static_cast<size_t>(row);
+  const auto size = static_cast<size_t>(block.slow.block.size);
+  const std::string name = i < look.rows.size() ? look.rows[i] : std::to_string(i + 1);
+  DecimatedTable::Rows rows = block.rows.rows();
+  ShownRow shown;
+  shown.title = name.empty() ? look.title : fmt::format("{}, {}", look.title, name);
+  shown.unit = look.unit;
+  shown.prior = look.factor * block.prior[row];
+  shown.prior_sigma = look.factor * block.prior_sigma[row];
+  shown.last = look.factor * block.last[row];
+  shown.last_sigma = look.factor * block.last_sigma[row];
+  shown.t = std::move(rows.x);
+  shown.value = scaled(std::move(rows.columns[i]), look.factor);
+  shown.sigma = scaled(std::move(rows.columns[i + size]), look.factor);
+  return shown;
+}
+
+void add_rows(const BlockHistory& block, const BlockLook& look, std::vector<ShownRow>& rows) {
+  if (block.rows.empty()) return;
+  for (Eigen::Index row = 0; row < block.slow.block.size; ++row) {
+    rows.push_back(shown_row(block, look, row));
+  }
+}
+
+Series prior_line(const ShownRow& row, double sign) {
+  const double at = row.prior + sign * 3 * row.prior_sigma;
+  Series series = line("prior ±3σ", Ink::gray, {row.t.front(), row.t.back()}, {at, at});
+  series.column = row.title + (sign < 0 ? " prior lower" : " prior upper");
+  series.dashed = true;
+  series.size = 1.4;
+  series.range_role = RangeRole::none;
+  return series;
+}
+
+std::string value_text(const ShownRow& row) {
+  return fmt::format("{} ± {}{}{}", significant_text(row.last), significant_text(row.last_sigma, 2),
+                     row.unit == "°" ? "" : " ", row.unit);
+}
+
+Panel row_panel(const RunData& data, const ShownRow& row) {
+  Panel panel = time_panel(data, {"", row.unit});
+  panel.title = row.title;
+  panel.note = value_text(row);
+  panel.series = {bounds(row.t, row.value, row.sigma, row.title + " 3 sigma"), prior_line(row, -1),
+                  prior_line(row, 1), line("estimate", Ink::blue, row.t, row.value)};
+  panel.series.back().column = row.title;
+  panel.series.back().range_role = RangeRole::most;
+  return panel;
+}
+
+Figure rows_figure(const RunData& data, const FigureLook& look, const std::vector<ShownRow>& rows,
+                   const std::string& subtitle) {
+  Figure figure = stacked_figure(
+      look.name, look.title, subtitle,
+      "Estimates with their 3-sigma bounds and, where they are within the axes, those of the prior "
+      "(dashed); at the right what is known in the end, with 1 sigma. What the recording tells "
+      "narrows as the vehicle turns and accelerates and then stays within the bounds it had "
+      "before; what it does not tell keeps the width of its prior.");
+  const size_t count = rows.size();
+  figure.columns = count == 4 ? 2 : static_cast<int>(std::min<size_t>(count, 3));
+  const size_t columns = static_cast<size_t>(figure.columns);
+  figure.height_mm = 40 + 46 * static_cast<double>((count + columns - 1) / columns);
+  for (const ShownRow& row : rows) figure.panels.push_back(row_panel(data, row));
+  return figure;
+}
+
+Table calibration_table(const std::vector<ShownRow>& rows) {
+  Table table;
+  table.title = "At the end";
+  table.header = {"", "Unit", "Estimate", "1σ", "1σ before", "Left of it"};
+  for (const ShownRow& row : rows) {
+    table.rows.push_back({row.title, row.unit, significant_text(row.last),
+                          significant_text(row.last_sigma), significant_text(row.prior_sigma),
+                          number_text(100 * row.last_sigma / row.prior_sigma, 0) + " %"});
+  }
+  table.note =
+      "Lever arms are from the IMU, along the vehicle's axes as they were told; the mounting is "
+      "what those axes have to be turned by.";
+  return table;
+}
+
+std::string untold_text(const std::vector<ShownRow>& rows) {
+  std::vector<std::string> untold;
+  for (const ShownRow& row : rows) {
+    if (!row.told()) untold.push_back(row.title);
+  }
+  if (untold.empty()) return {};
+  const bool one = untold.size() == 1;
+  return fmt::format("{}: the recording does not tell {}; {} at {}.", fmt::join(untold, "; "),
+                     one ? "it" : "them", one ? "it stays" : "they stay",
+                     one ? "its prior" : "their priors");
+}
+
+const BlockHistory* find_block(const RunData& data, std::string_view name) {
+  const auto found =
+      std::find_if(data.blocks.begin(), data.blocks.end(),
+                   [&](const BlockHistory& block) { return block.slow.block.name == name; });
+  return found == data.blocks.end() ? nullptr : &*found;
+}
+
+}  // namespace
+
+Section calibration_section(const RunData& data, const std::string& subtitle) {
+  Section section{"Calibration"};
+  std::vector<ShownRow> all;
+  for (const FigureLook& look : figure_looks(data)) {
+    std::vector<ShownRow> rows;
+    for (const BlockLook& block : look.blocks) {
+      if (const BlockHistory* found = find_block(data, block.name)) add_rows(*found, block, rows);
+    }
+    if (rows.empty()) continue;
+    section.figures.push_back(rows_figure(data, look, rows, subtitle));
+    all.insert(all.end(), rows.begin(), rows.end());
+  }
+  if (all.empty()) return section;
+  const std::string untold = untold_text(all);
+  if (!untold.empty()) section.paragraphs.push_back(untold);
+  section.tables.push_back(calibration_table(all));
+  return section;
+}
+
+}  // namespace foucault::content
