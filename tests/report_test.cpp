@@ -70,6 +70,35 @@ class Report : public testing::Test {
   TestFolder folder_;
 };
 
+TEST_F(Report, ShowsAidsAndCalibrationWhereThereAreAny) {
+  const auto titles = [&](const std::string& name) {
+    const json report = json::parse(folder_.text(name + "/report/report.json"));
+    std::set<std::string> titles;
+    for (const json& each : report["sections"]) titles.insert(each["title"]);
+    return titles;
+  };
+  run("trip.rawlog", "bare", {"--set", "aids.mode=none", "--set", "calibrate.mode=none"});
+  EXPECT_THAT(titles("bare"), Not(testing::Contains(testing::AnyOf("Aids", "Calibration"))));
+
+  const json metrics = run("trip.rawlog", "aided",
+                           {"--set", "aids.nonholonomic=on", "--set", "calibrate.mounting=on",
+                            "--set", "calibrate.lever_arm=on"});
+  const json aids = section("aided", "Aids");
+  const json& first = aids["tables"][0]["rows"][0];
+  EXPECT_EQ(first[0], "Nonholonomic");
+  EXPECT_EQ(first[1], std::to_string(int(metrics["aids"]["nonholonomic"]["used"])));
+  EXPECT_THAT(series("aided", "aid_innovations"), testing::Contains("used"));
+  const json calibration = section("aided", "Calibration");
+  EXPECT_THAT(calibration["paragraphs"][0].get<std::string>(),
+              HasSubstr("Antenna, down: the recording does not tell it"));
+  const json down = json::parse(folder_.text("aided/report/calibration_arms.json"))["panels"][2];
+  for (const json& each : down["series"]) {
+    if (each["label"] != "estimate") continue;
+    const double last_cm = each["y"].back();
+    EXPECT_NEAR(last_cm, 100 * double(metrics["calibration"]["lever_arm"]["value"][2]), 1e-3);
+  }
+}
+
 double mean_of(const json& squares) { return squares["mean"]; }
 
 TEST_F(Report, OfACleanTripIsCalmAndConsistent) {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -203,18 +204,46 @@ std::vector<evaluation::ExperimentRun> experiment_runs(const EvaluationCase& eva
 
 namespace {
 
+/// What can be switched off, and how.
+struct Part {
+  std::string name;
+  std::vector<std::string> assignments;
+};
+
+std::vector<Part> parts_of(const Settings& settings) {
+  const std::string no_aids = "aids.mode=none", no_calibration = "calibrate.mode=none";
+  const bool calibrates = settings.calibrate.layout().slow_size() > 0;
+  std::vector<Part> parts;
+  for (const std::string& aid : settings.aids.in_use()) {
+    parts.push_back({aid, {fmt::format("aids.{}=off", aid)}});
+  }
+  const bool aided = !parts.empty();
+  if (aided) parts.push_back({"aids", {no_aids}});
+  if (calibrates) parts.push_back({"calibration", {no_calibration}});
+  if (aided && calibrates) parts.push_back({"both", {no_aids, no_calibration}});
+  return parts;
+}
+
+EvaluationCase without(const Part& part, const EvaluationCase& whole) {
+  EvaluationCase c = whole;
+  c.label = evaluation::AblationCase{whole.method, part.name}.label();
+  for (const std::string& assignment : part.assignments) set_config(assignment, c.settings);
+  return c;
+}
+
 /// With what the logs say, once the settings are known to be right.
 std::vector<EvaluationCase> with_notes(std::vector<EvaluationCase> cases, Console& console) {
   for (const EvaluationCase& c : cases) experiment_runs(c);
-  std::map<std::string, double> offsets;  // they are the same for all methods
+  // They are the same for all methods, by log and aids.
+  std::map<std::pair<std::string, std::vector<std::string>>, double> offsets;
   for (EvaluationCase& c : cases) {
     c.settings = settings_for(c.log, c.settings);
-    const auto found = offsets.find(c.log);
-    if (found == offsets.end()) {
-      c.settings = with_time_offset(c.log, c.settings, console);
-      offsets.emplace(c.log, c.settings.calibrate.time_offset_s);
-    } else {
-      c.settings.calibrate.time_offset_s = c.settings.rawlog.fix_delay_s = found->second;
+    if (c.settings.calibrate.layout().find(state::block::time_offset)) {
+      const auto [offset, is_new] = offsets.try_emplace({c.log, c.settings.aids.in_use()});
+      if (is_new) {
+        offset->second = with_time_offset(c.log, c.settings, console).calibrate.time_offset_s;
+      }
+      c.settings.calibrate.time_offset_s = c.settings.rawlog.fix_delay_s = offset->second;
     }
     if (c.imu == imu::ImuOptions::kAsRecorded) c.imu = c.settings.imu.preset;
   }
@@ -222,6 +251,28 @@ std::vector<EvaluationCase> with_notes(std::vector<EvaluationCase> cases, Consol
 }
 
 }  // namespace
+
+Ablation with_parts_off(const std::vector<EvaluationCase>& cases) {
+  Ablation ablation;
+  const auto add = [&](const EvaluationCase& c, const std::string& part) {
+    ablation.cases.push_back(c);
+    const evaluation::AblationCase what{c.method, part};
+    const bool is_new =
+        std::none_of(ablation.names.begin(), ablation.names.end(),
+                     [&](const auto& name) { return name.label() == what.label(); });
+    if (is_new) ablation.names.push_back(what);
+  };
+  for (const EvaluationCase& c : cases) {
+    add(c, "");
+    for (const Part& part : parts_of(c.settings)) add(without(part, c), part.name);
+  }
+  if (ablation.cases.size() == cases.size()) {
+    throw UsageError(
+        "--ablate: nothing can be switched off; the configuration uses no aid and estimates "
+        "nothing beside the biases (sections aids and calibrate)");
+  }
+  return ablation;
+}
 
 void check_logs(const std::vector<std::string>& logs, const Settings& settings) {
   for (const std::string& log : logs) open_log(log, settings);
@@ -262,7 +313,8 @@ std::vector<evaluation::ExperimentResult> evaluate(const std::vector<EvaluationC
 
 void write_evaluation(const evaluation::EvaluationSummary& summary, const EvaluationLabels& labels,
                       bool with_report, const std::filesystem::path& folder, Console& console) {
-  exports::write_evaluation(summary, labels.origin, folder);
+  exports::write_evaluation(summary, labels.origin, folder,
+                            evaluation::ablation_rows(summary.overall(), labels.ablation));
   if (!with_report) return;
   console.progress("drawing", 0);
   page::write_report(content::evaluation_page(evaluation_report(summary, labels)),

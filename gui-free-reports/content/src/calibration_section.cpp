@@ -165,7 +165,7 @@ Figure rows_figure(const RunData& data, const FigureLook& look, const std::vecto
 Table calibration_table(const std::vector<ShownRow>& rows) {
   Table table;
   table.title = "At the end";
-  table.header = {"", "Unit", "Estimate", "1σ", "1σ before", "Left of it"};
+  table.header = {"", "Unit", "Estimate", "1σ", "1σ of the prior", "Share"};
   for (const ShownRow& row : rows) {
     table.rows.push_back({row.title, row.unit, significant_text(row.last),
                           significant_text(row.last_sigma), significant_text(row.prior_sigma),
