@@ -11,6 +11,12 @@ void OutputOptions::fields(ConfigFields& f) {
            "statistics in metrics.json begin this long after the first fix");
 }
 
+void VehicleOptions::fields(ConfigFields& f) {
+  f.text("kind", kind, {"auto", "car", "any"},
+         "car: its wheels do not slip sideways; any: nothing is assumed; auto: the recording shows "
+         "it");
+}
+
 navigation::EpochRate OutputOptions::epoch_rate() const {
   return rate == "imu" ? navigation::EpochRate::imu : navigation::EpochRate::epochs;
 }
@@ -20,6 +26,7 @@ void Settings::fields(ConfigFields& f) {
   f.section("alignment", alignment, "initial attitude");
   f.section("gnss", gnss, "which fixes are used, and how much they are trusted");
   f.section("gaps", gaps, "holes in the IMU stream");
+  f.section("vehicle", vehicle, "what moves");
   f.section("aids", aids, "what is measured beside positions");
   f.section("calibrate", calibrate, "what is estimated beside the biases");
   f.section("fgo", fgo, "factor graph: methods refined, rough, full and batch");
@@ -50,10 +57,14 @@ Settings settings_for(const std::string& log, const Settings& settings) {
   constexpr double kGivenLeverArm = 0.05;  // [m]
   constexpr double kUnknownLeverArm = 1;
   std::optional<double>& sigma = completed.calibrate.lever_arm_sigma_m;
-  if (!sigma && settings.calibrate.lever_arm == "on") {
+  if (!sigma && settings.calibrate.lever_arm != "off") {
     sigma = lever_arm_is_known(log, notes, settings) ? kGivenLeverArm : kUnknownLeverArm;
   }
   completed.rawlog.fix_delay_s = completed.calibrate.time_offset_s;
+  measurement::AidOptions& aids = completed.aids;
+  const std::string rolls = settings.vehicle.kind == "car" ? "on" : "off";
+  if (settings.vehicle.kind != "auto" && aids.nonholonomic == "auto") aids.nonholonomic = rolls;
+  if (settings.vehicle.kind == "any" && aids.wheel_speed == "auto") aids.wheel_speed = "off";
   return completed;
 }
 

@@ -25,6 +25,14 @@ class OutputOptions : public Configurable {
   navigation::EpochRate epoch_rate() const;
 };
 
+/// Section `vehicle` of the configuration.
+class VehicleOptions : public Configurable {
+ public:
+  std::string kind = "auto";  ///< auto: the recording shows it | car: on wheels | any
+
+  void fields(ConfigFields& f) override;
+};
+
 /// The configuration of the methods; every key has a default that suits a car.
 class Settings : public Configurable {
  public:
@@ -32,6 +40,7 @@ class Settings : public Configurable {
   alignment::AlignmentOptions alignment;
   diagnosis::GnssOptions gnss;
   navigation::GapOptions gaps;
+  VehicleOptions vehicle;
   measurement::AidOptions aids;
   state::CalibrateOptions calibrate;
   fgo::FgoOptions fgo;

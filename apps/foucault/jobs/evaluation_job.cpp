@@ -17,7 +17,7 @@
 #include "foucault/core/units.h"
 #include "foucault/page/report_page.h"
 #include "foucault/rawlog/rawlog_source.h"
-#include "jobs/time_offset.h"
+#include "jobs/survey.h"
 #include "methods.h"
 
 namespace foucault::app {
@@ -212,7 +212,7 @@ struct Part {
 
 std::vector<Part> parts_of(const Settings& settings) {
   const std::string no_aids = "aids.mode=none", no_calibration = "calibrate.mode=none";
-  const bool calibrates = settings.calibrate.layout().slow_size() > 0;
+  const bool calibrates = settings.calibrate.resolved({true, true}).layout().slow_size() > 0;
   std::vector<Part> parts;
   for (const std::string& aid : settings.aids.in_use()) {
     parts.push_back({aid, {fmt::format("aids.{}=off", aid)}});
@@ -234,17 +234,11 @@ EvaluationCase without(const Part& part, const EvaluationCase& whole) {
 /// With what the logs say, once the settings are known to be right.
 std::vector<EvaluationCase> with_notes(std::vector<EvaluationCase> cases, Console& console) {
   for (const EvaluationCase& c : cases) experiment_runs(c);
-  // They are the same for all methods, by log and aids.
-  std::map<std::pair<std::string, std::vector<std::string>>, double> offsets;
+  // A log is the same for all methods; what it shows depends on the aids.
+  std::map<std::vector<std::string>, Surveyor> surveyors;
   for (EvaluationCase& c : cases) {
-    c.settings = settings_for(c.log, c.settings);
-    if (c.settings.calibrate.layout().find(state::block::time_offset)) {
-      const auto [offset, is_new] = offsets.try_emplace({c.log, c.settings.aids.in_use()});
-      if (is_new) {
-        offset->second = with_time_offset(c.log, c.settings, console).calibrate.time_offset_s;
-      }
-      c.settings.calibrate.time_offset_s = c.settings.rawlog.fix_delay_s = offset->second;
-    }
+    Surveyor& surveyor = surveyors.try_emplace(c.settings.aids.in_use(), console).first->second;
+    c.settings = surveyor.complete(c.log, settings_for(c.log, c.settings));
     if (c.imu == imu::ImuOptions::kAsRecorded) c.imu = c.settings.imu.preset;
   }
   return cases;

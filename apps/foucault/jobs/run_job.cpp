@@ -12,7 +12,7 @@
 #include "foucault/export/text_file.h"
 #include "foucault/rawlog/rawlog_source.h"
 #include "jobs/run_output.h"
-#include "jobs/time_offset.h"
+#include "jobs/survey.h"
 #include "methods.h"
 #include "output_directory.h"
 #include "pages/run_page.h"
@@ -99,7 +99,7 @@ RunResult run_into(const RunJob& job, const std::filesystem::path& folder, Conso
   std::optional<Profile> profile;
   if (job.profile) profile.emplace().add(Stage::start, process_cpu_s());
   const ResourceMeter meter;
-  Settings settings = with_time_offset(job.log, settings_for(job.log, job.settings), console);
+  Settings settings = Surveyor(console).complete(job.log, settings_for(job.log, job.settings));
   const std::string config = dump_config(settings);
   const Method& method = find_method(job.method);
 

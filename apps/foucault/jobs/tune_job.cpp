@@ -10,6 +10,7 @@
 #include "foucault/tuning/tuning_output.h"
 #include "interrupt.h"
 #include "jobs/evaluation_job.h"
+#include "jobs/survey.h"
 #include "methods.h"
 #include "output_directory.h"
 #include "pages/tuning_page.h"
@@ -48,9 +49,10 @@ void check(const TuneJob& job) {
 }
 
 tuning::SearchPlan plan(const TuneJob& job, Console& console) {
-  const auto runs = [&job](const std::string& log, const std::string& method,
-                           const tuning::GridPoint& point) {
-    const Settings settings = settings_for(log, job.at(point));
+  const auto surveyor = std::make_shared<Surveyor>(console);
+  const auto runs = [&job, surveyor](const std::string& log, const std::string& method,
+                                     const tuning::GridPoint& point) {
+    const Settings settings = surveyor->complete(log, settings_for(log, job.at(point)));
     return experiment_runs({log, log, settings.imu.preset, method, "", settings});
   };
   return {job.config,

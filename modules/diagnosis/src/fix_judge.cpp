@@ -24,13 +24,6 @@ constexpr std::size_t kLevelNeeds = 5;    // fixes; chosen: two of five may be o
 /// Chosen: sigmas are too small in turns of a minute at most, and no fix counts for more than ten.
 constexpr double kBelievedMemory = 60;  // fixes
 constexpr double kLargestShare = 10;    // times the level
-/// Survival function of the chi-square distribution with up to 3 degrees of freedom.
-double chi_square_tail(double x, int dimension) {
-  if (dimension == 2) return std::exp(-x / 2);
-  const double one = std::erfc(std::sqrt(x / 2));
-  return dimension == 1 ? one : one + std::sqrt(2 * x / kPi) * std::exp(-x / 2);
-}
-
 double chi_square_median(int dimension) {
   constexpr std::array<double, 4> kMedian{0, 0.455, 1.386, 2.366};
   return kMedian[static_cast<std::size_t>(dimension)];
@@ -55,6 +48,12 @@ void FixJudge::start(int64_t t_ns) {
 void FixJudge::doubt_state(int64_t t_ns) {
   state_doubted_until_ns_ = t_ns + kStateDoubtedNs;
   gate_open_until_ns_ = std::max(gate_open_until_ns_, t_ns + kGateOpenNs);
+}
+
+double chi_square_tail(double square, int dimension) {
+  if (dimension == 2) return std::exp(-square / 2);
+  const double one = std::erfc(std::sqrt(square / 2));
+  return dimension == 1 ? one : one + std::sqrt(2 * square / kPi) * std::exp(-square / 2);
 }
 
 double FixJudge::level() const {

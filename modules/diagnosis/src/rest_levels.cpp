@@ -39,11 +39,18 @@ void ShakeMeter::add(const ImuIncrement& increment) {
   squares_ += rates.cwiseAbs2();
 }
 
+Eigen::Matrix<double, 6, 1> ShakeMeter::variance() const {
+  return squares_ / samples_ - (sum_ / samples_).cwiseAbs2();
+}
+
+double ShakeMeter::mean_rate_sigma() const {
+  return samples_ > 0 ? std::sqrt(variance().tail<3>().cwiseMax(0).mean() / samples_) : 0;
+}
+
 std::optional<ShakeLevel> ShakeMeter::level() const {
   if (samples_ < kLeastSamples) return std::nullopt;
-  const Eigen::Matrix<double, 6, 1> variance = squares_ / samples_ - (sum_ / samples_).cwiseAbs2();
-  return ShakeLevel{log_deviation(variance.head<3>().sum()),
-                    log_deviation(variance.tail<3>().sum())};
+  return ShakeLevel{log_deviation(variance().head<3>().sum()),
+                    log_deviation(variance().tail<3>().sum())};
 }
 
 void RestLevels::learn(const ShakeLevel& level, bool at_rest) {

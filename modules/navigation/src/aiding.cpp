@@ -1,9 +1,11 @@
 #include "aiding.h"
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 
 #include "foucault/core/time.h"
+#include "foucault/diagnosis/fix_judge.h"
 #include "foucault/imu/increments.h"
 #include "foucault/measurement/nonholonomic.h"
 #include "foucault/measurement/wheel_speed.h"
@@ -23,6 +25,12 @@ constexpr double kUsualWheelNoise = 0.1;  // [m/s]
 constexpr double kMostSlip = 0.5;  // [m/s]
 constexpr double kMostWheelScale = 0.3;
 
+/// Probability that a right measurement disagrees more.
+double agreement(const state::Innovation& innovation) {
+  return diagnosis::chi_square_tail(diagnosis::mahalanobis_squared(innovation),
+                                    static_cast<int>(innovation.value.size()));
+}
+
 }  // namespace
 
 Aiding::Aiding(const NavigationRunOptions& options, state::Sink& sink)
@@ -37,10 +45,6 @@ void Aiding::start(int64_t t_ns, const state::ImuBias& bias) {
   stretch_ = {};
   stretch_.body.start(t_ns, bias);
   stretch_.wheel.start(t_ns, bias);
-}
-
-void Aiding::doubt_state(int64_t t_ns) {
-  for (auto& [name, judge] : judges_) judge.doubt_state(t_ns);
 }
 
 void Aiding::propagate(const ImuIncrement& increment, bool made_up) {
@@ -89,9 +93,9 @@ void Aiding::stop(int64_t t_ns, bool held, measurement::Navigator& navigator) {
   const std::optional<measurement::BodyStretch> stretch = stretch_.body.stretch();
   if (stretch && !stretch_.made_up) {
     if (held) slip_.add(*stretch, now, mean_wheel());
-    const bool rest = stands(now, held);
-    if (rest && options_.aids.uses(options_.aids.zero_velocity)) {
-      use_rest(t_ns, navigator);
+    if (const std::optional<Rest> known = rest(now, held, navigator)) {
+      use(t_ns, known->velocity, navigator);
+      use(t_ns, known->rate, navigator);
     } else {
       use_wheels(t_ns, *stretch, navigator);
     }
@@ -116,12 +120,21 @@ bool Aiding::stands(const state::Epoch& now, bool held) {
   return still ? odds > 0 : odds > kCertain;
 }
 
-void Aiding::use_rest(int64_t t_ns, measurement::Navigator& navigator) {
+/// A hover, a turn on the spot or a straight at constant speed is none: one in a thousand true ones
+/// is missed.
+std::optional<Aiding::Rest> Aiding::rest(const state::Epoch& now, bool held,
+                                         const measurement::Navigator& navigator) {
+  constexpr double kMissed = 1e-3;
+  if (!stands(now, held) || !options_.aids.uses(options_.aids.zero_velocity)) return std::nullopt;
   const double dt = seconds_between(begin_ns_, end_ns_);
-  use(t_ns, std::make_shared<measurement::ZeroVelocity>(options_.aids.zero_velocity_sigma_m_s), 3,
-      navigator);
-  const double sigma = options_.imu.gyro_noise_density / std::sqrt(dt);
-  use(t_ns, std::make_shared<measurement::ZeroRate>(stretch_.turned_b / dt, sigma), 3, navigator);
+  const double rate_sigma = std::max(options_.imu.gyro_noise_density / std::sqrt(dt),
+                                     stretch_.shake.mean_rate_sigma());
+  const Rest rest{
+      std::make_shared<measurement::ZeroVelocity>(options_.aids.zero_velocity_sigma_m_s),
+      std::make_shared<measurement::ZeroRate>(stretch_.turned_b / dt, rate_sigma)};
+  if (agreement(navigator.innovation(*rest.velocity)) < kMissed) return std::nullopt;
+  if (agreement(navigator.innovation(*rest.rate)) < kMissed) return std::nullopt;
+  return rest;
 }
 
 std::optional<Eigen::Vector2d> Aiding::slip_sigma() const {
@@ -150,7 +163,7 @@ void Aiding::use_wheels(int64_t t_ns, const measurement::BodyStretch& stretch,
                         measurement::Navigator& navigator) {
   if (const std::optional<Eigen::Vector2d> sigma = slip_sigma()) {
     use(t_ns, std::make_shared<measurement::Nonholonomic>(stretch, options_.mounting.q_v_b, *sigma),
-        2, navigator);
+        navigator);
   }
   const std::optional<measurement::BodyStretch> wheel = stretch_.wheel.stretch();
   const std::optional<double> sigma = wheel_sigma();
@@ -158,19 +171,17 @@ void Aiding::use_wheels(int64_t t_ns, const measurement::BodyStretch& stretch,
     use(t_ns,
         std::make_shared<measurement::WheelSpeedMean>(*wheel, options_.mounting.q_v_b,
                                                       *mean_wheel(), *sigma),
-        1, navigator);
+        navigator);
   }
 }
 
-void Aiding::use(int64_t t_ns, const measurement::ObservationPtr& observation, int dimension,
+void Aiding::use(int64_t t_ns, const measurement::ObservationPtr& observation,
                  measurement::Navigator& navigator) {
-  diagnosis::FixJudge& judge =
-      judges_.try_emplace(observation->name(), options_.gnss, dimension).first->second;
   const state::Innovation innovation = navigator.innovation(*observation);
-  const bool believed = judge.believes(t_ns, innovation);
+  const bool believed = agreement(innovation) >= options_.gnss.gate_false_alarm;
   if (believed) navigator.update(observation);
-  sink_.observation(
-      {t_ns, observation->name(), dimension, diagnosis::mahalanobis_squared(innovation), believed});
+  sink_.observation({t_ns, observation->name(), static_cast<int>(innovation.value.size()),
+                     diagnosis::mahalanobis_squared(innovation), believed});
 }
 
 }  // namespace foucault::navigation

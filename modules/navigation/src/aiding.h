@@ -2,12 +2,8 @@
 
 #include <cstdint>
 #include <deque>
-#include <map>
 #include <optional>
-#include <string_view>
-#include <vector>
 
-#include "foucault/diagnosis/fix_judge.h"
 #include "foucault/diagnosis/rest_levels.h"
 #include "foucault/diagnosis/slip_watch.h"
 #include "foucault/measurement/body_stretch.h"
@@ -25,7 +21,9 @@ namespace foucault::navigation {
 ///   not as in motion (diagnosis::RestLevels): zero velocity and zero rate.
 /// - In motion: nonholonomic and wheel speed, once a fit to what fixes showed has found how large
 ///   slip is (diagnosis::SlipWatch), with that noise; of `on`, from the begin on.
-/// Each is gated by the chi-square test of its own dimension, as fixes are.
+/// Each is gated by the chi-square test of its own dimension. Other than that of fixes it does not
+/// follow the level of recent innovations: what nobody measured is not right against the state.
+/// Rest that does not agree with the rates, or with the velocity, is none.
 class Aiding {
  public:
   Aiding(const NavigationRunOptions& options, state::Sink& sink);
@@ -35,8 +33,6 @@ class Aiding {
   void add(const WheelSpeed& speed) { wheel_waits_.push_back(speed); }
   /// `made_up`: bridges a hole; nothing was sensed since the last stop then.
   void propagate(const ImuIncrement& increment, bool made_up);
-  /// The state has become worse than its covariance may say.
-  void doubt_state(int64_t t_ns);
 
   bool is_due(int64_t t_ns) const;
   /// Uses what there is. held: fixes hold the state.
@@ -55,13 +51,17 @@ class Aiding {
 
   void take_wheel_until(const ImuIncrement& increment);
   std::optional<double> mean_wheel() const;
+  struct Rest {
+    measurement::ObservationPtr velocity, rate;
+  };
+  std::optional<Rest> rest(const state::Epoch& now, bool held,
+                           const measurement::Navigator& navigator);
   bool stands(const state::Epoch& now, bool held);
-  void use_rest(int64_t t_ns, measurement::Navigator& navigator);
   void use_wheels(int64_t t_ns, const measurement::BodyStretch& stretch,
                   measurement::Navigator& navigator);
   std::optional<Eigen::Vector2d> slip_sigma() const;
   std::optional<double> wheel_sigma() const;
-  void use(int64_t t_ns, const measurement::ObservationPtr& observation, int dimension,
+  void use(int64_t t_ns, const measurement::ObservationPtr& observation,
            measurement::Navigator& navigator);
 
   NavigationRunOptions options_;
@@ -72,7 +72,6 @@ class Aiding {
   std::deque<WheelSpeed> wheel_waits_;
   diagnosis::RestLevels levels_;
   diagnosis::SlipWatch slip_;
-  std::map<std::string_view, diagnosis::FixJudge> judges_;
 };
 
 }  // namespace foucault::navigation

@@ -92,7 +92,6 @@ Interruption Driving::interruption() {
 void Driving::doubt_state(int64_t t_ns) {
   gate_.doubt_state(t_ns);
   velocity_judge_.doubt_state(t_ns);
-  aiding_.doubt_state(t_ns);
 }
 
 imu::RecentRates Driving::take_recent_rates(const ImuIncrement& next) {

@@ -5,20 +5,25 @@
 namespace foucault::state {
 
 void CalibrateOptions::fields(ConfigFields& f) {
-  f.text("mode", mode, {"auto", "none"}, "auto: what is on below; none: nothing beside the biases");
-  f.text("gyro_scale", gyro_scale, {"on", "off"}, "scale factors of the gyroscopes");
-  f.text("accel_scale", accel_scale, {"on", "off"}, "scale factors of the accelerometers");
-  f.text("gyro_cross_axis", gyro_cross_axis, {"on", "off"},
+  f.text("mode", mode, {"auto", "none"},
+         "auto: as below; none: nothing beside the biases. Of the keys below, auto: where the "
+         "recording can show it");
+  f.text("gyro_scale", gyro_scale, {"auto", "on", "off"}, "scale factors of the gyroscopes");
+  f.text("accel_scale", accel_scale, {"auto", "on", "off"}, "scale factors of the accelerometers");
+  f.text("gyro_cross_axis", gyro_cross_axis, {"auto", "on", "off"},
          "what of one axis of the gyroscopes shows on another");
-  f.text("accel_cross_axis", accel_cross_axis, {"on", "off"}, "the same of the accelerometers");
-  f.text("lever_arm", lever_arm, {"on", "off"}, "IMU to antenna, what it was given wrong by");
-  f.text("time_offset", time_offset, {"on", "off"},
+  f.text("accel_cross_axis", accel_cross_axis, {"auto", "on", "off"},
+         "the same of the accelerometers");
+  f.text("lever_arm", lever_arm, {"auto", "on", "off"},
+         "IMU to antenna, what it was given wrong by");
+  f.text("time_offset", time_offset, {"auto", "on", "off"},
          "how late fixes are stamped, on the clock of the IMU; the log is gone through twice");
-  f.text("time_drift", time_drift, {"on", "off"}, "change of the time offset: clocks run apart");
-  f.text("mounting", mounting, {"on", "off"},
+  f.text("time_drift", time_drift, {"auto", "on", "off"},
+         "change of the time offset: clocks run apart");
+  f.text("mounting", mounting, {"auto", "on", "off"},
          "pitch and heading of the IMU in the vehicle, what they were told wrong by");
-  f.text("wheel_scale", wheel_scale, {"on", "off"}, "of the speed that wheels tell");
-  f.text("wheel_lever_arm", wheel_lever_arm, {"on", "off"},
+  f.text("wheel_scale", wheel_scale, {"auto", "on", "off"}, "of the speed that wheels tell");
+  f.text("wheel_lever_arm", wheel_lever_arm, {"auto", "on", "off"},
          "IMU to the point of the vehicle that does not slip sideways");
   f.optional_number(
       "lever_arm_sigma_m", lever_arm_sigma_m, kPositive,
@@ -46,6 +51,21 @@ void CalibrateOptions::fields(ConfigFields& f) {
            "what is known of the drift of the time offset before, 1 sigma");
   f.number("scale_tau_s", scale_tau_s, kPositive,
            "correlation time of scale factors; a graph takes them as constant");
+}
+
+CalibrateOptions CalibrateOptions::resolved(const Carried& carried) const {
+  CalibrateOptions out = *this;
+  const auto resolve = [](std::string& choice, bool on) {
+    if (choice == "auto") choice = on ? "on" : "off";
+  };
+  for (std::string* always :
+       {&out.gyro_scale, &out.accel_scale, &out.lever_arm, &out.time_offset, &out.time_drift})
+    resolve(*always, true);
+  for (std::string* rare : {&out.gyro_cross_axis, &out.accel_cross_axis}) resolve(*rare, false);
+  for (std::string* rolling : {&out.mounting, &out.wheel_lever_arm})
+    resolve(*rolling, carried.rolling || carried.wheel_speed);
+  resolve(out.wheel_scale, carried.wheel_speed);
+  return out;
 }
 
 Layout CalibrateOptions::layout() const {

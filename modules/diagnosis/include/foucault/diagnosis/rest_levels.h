@@ -20,8 +20,12 @@ class ShakeMeter {
   void add(const ImuIncrement& increment);
   /// None of fewer than eight samples.
   std::optional<ShakeLevel> level() const;
+  /// Of the mean rate, if what shakes is white: each axis, their root mean square [rad/s].
+  double mean_rate_sigma() const;
 
  private:
+  Eigen::Matrix<double, 6, 1> variance() const;
+
   int samples_ = 0;
   Eigen::Matrix<double, 6, 1> sum_ = Eigen::Matrix<double, 6, 1>::Zero();
   Eigen::Matrix<double, 6, 1> squares_ = Eigen::Matrix<double, 6, 1>::Zero();

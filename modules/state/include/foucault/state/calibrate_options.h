@@ -11,17 +11,13 @@ namespace foucault::state {
 /// Section `calibrate` of the configuration: which slow blocks are estimated.
 class CalibrateOptions : public Configurable {
  public:
-  std::string mode = "auto";             ///< auto: as below | none: nothing beside the biases
-  std::string gyro_scale = "off";        ///< on | off
-  std::string accel_scale = "off";       ///< on | off
-  std::string gyro_cross_axis = "off";   ///< on | off
-  std::string accel_cross_axis = "off";  ///< on | off
-  std::string lever_arm = "off";         ///< on | off
-  std::string time_offset = "off";       ///< on | off
-  std::string time_drift = "off";        ///< on | off
-  std::string mounting = "off";          ///< on | off
-  std::string wheel_scale = "off";       ///< on | off
-  std::string wheel_lever_arm = "off";   ///< on | off
+  std::string mode = "auto";  ///< auto: as below | none: nothing beside the biases
+  /// auto | on | off
+  std::string gyro_scale = "auto", accel_scale = "auto";
+  std::string gyro_cross_axis = "off", accel_cross_axis = "off";
+  std::string lever_arm = "auto";
+  std::string time_offset = "auto", time_drift = "auto";
+  std::string mounting = "auto", wheel_scale = "auto", wheel_lever_arm = "auto";
   /// Not set: 5 cm where the lever arm was given in the import, else 1 m.
   std::optional<double> lever_arm_sigma_m;
   double time_offset_sigma_s = 0.3;
@@ -39,6 +35,16 @@ class CalibrateOptions : public Configurable {
   double scale_tau_s = 1e9;
 
   void fields(ConfigFields& f) override;
+
+  /// What a recording carries, for what is `auto`.
+  struct Carried {
+    bool rolling = false;      ///< wheels were seen to roll without slip
+    bool wheel_speed = false;  ///< and their speed to be that of the vehicle
+  };
+  /// With `on` or `off` in the place of `auto`.
+  CalibrateOptions resolved(const Carried& carried) const;
+
+  /// Of the blocks that are `on`.
   Layout layout() const;
 };
 

@@ -1,0 +1,104 @@
+#include "jobs/survey.h"
+
+#include <cmath>
+#include <optional>
+
+#include "foucault/core/error.h"
+#include "foucault/rawlog/rawlog_source.h"
+#include "methods.h"
+
+namespace foucault::app {
+namespace {
+
+class Watcher : public state::Sink {
+ public:
+  void epoch(const state::Epoch& epoch) override { last = epoch; }
+  void observation(const state::ObservationResult& result) override {
+    if (result.used) ++used[std::string(result.name)];
+  }
+  std::optional<state::Epoch> last;
+  std::map<std::string, int> used;
+};
+
+/// A filter through the log; null where it cannot be processed, which the run itself tells.
+std::optional<Watcher> look_through(const std::string& log, const Settings& settings,
+                                    Console& console) {
+  Watcher watcher;
+  try {
+    rawlog::RawlogSource source(log, settings.imu.sample_kind(), settings.rawlog);
+    const std::unique_ptr<state::Estimator> estimator =
+        find_method("ekf").make(settings, source.mounting(), watcher);
+    while (const std::optional<Measurement> measurement = source.next()) {
+      estimator->process(*measurement);
+      console.progress("looking through", source.progress());
+    }
+    estimator->finish();
+  } catch (const DataError&) {
+    return std::nullopt;
+  }
+  console.clear_progress();
+  if (!watcher.last) return std::nullopt;
+  return watcher;
+}
+
+/// What is left of the offset at the end of the log is more than small, and is known.
+std::optional<double> rest_of_offset(const Watcher& watcher, const state::Layout& layout) {
+  constexpr double kSmall = 0.002;  // [s]; at 3 m/s^2 the second order is 6 micrometres
+  const state::SlowBlock* offset = layout.find(state::block::time_offset);
+  if (!offset) return std::nullopt;
+  const double value = watcher.last->slow[offset->index];
+  const double sigma = std::sqrt(state::part(watcher.last->covariance, *offset, *offset)(0, 0));
+  if (std::abs(value) < std::max(kSmall, sigma)) return std::nullopt;
+  return value;
+}
+
+bool leaves_open(const Settings& settings) {
+  const state::CalibrateOptions& c = settings.calibrate;
+  const measurement::AidOptions& aids = settings.aids;
+  if (c.mode == "none") return false;
+  const bool wheels = aids.uses(aids.nonholonomic) || aids.uses(aids.wheel_speed);
+  return c.time_offset != "off" || (wheels && (c.mounting == "auto" || c.wheel_scale == "auto" ||
+                                               c.wheel_lever_arm == "auto"));
+}
+
+}  // namespace
+
+Survey Surveyor::survey(const std::string& log, Settings settings) {
+  constexpr int kMostPasses = 3;
+  constexpr double kMost = 1;  // [s]; as the key
+  constexpr int kTold = 10;    // measurements: fewer tell nothing of what they depend on
+  Survey found;
+  found.time_offset_s = settings.calibrate.time_offset_s;
+  settings.calibrate = settings.calibrate.resolved({true, true});
+  for (int pass = 0; pass < kMostPasses; ++pass) {
+    const std::optional<Watcher> watcher = look_through(log, settings, console_);
+    if (!watcher) break;
+    const auto used = [&](const char* aid) {
+      const auto count = watcher->used.find(aid);
+      return count != watcher->used.end() && count->second >= kTold;
+    };
+    found.carried = {used("nonholonomic"), used("wheel_speed")};
+    const std::optional<double> rest = rest_of_offset(*watcher, settings.calibrate.layout());
+    if (!rest || std::abs(found.time_offset_s + *rest) > kMost) break;
+    found.time_offset_s += *rest;
+    settings.calibrate.time_offset_s = settings.rawlog.fix_delay_s = found.time_offset_s;
+  }
+  return found;
+}
+
+Settings Surveyor::complete(const std::string& log, const Settings& settings) {
+  Settings completed = settings;
+  if (!leaves_open(settings)) {
+    completed.calibrate = settings.calibrate.resolved({});
+    return completed;
+  }
+  auto found = seen_.find(log);
+  if (found == seen_.end()) found = seen_.emplace(log, survey(log, settings)).first;
+  completed.calibrate = settings.calibrate.resolved(found->second.carried);
+  if (settings.calibrate.time_offset != "off") {
+    completed.calibrate.time_offset_s = completed.rawlog.fix_delay_s = found->second.time_offset_s;
+  }
+  return completed;
+}
+
+}  // namespace foucault::app
