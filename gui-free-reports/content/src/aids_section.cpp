@@ -47,7 +47,7 @@ Table aids_table(const std::vector<AidSummary>& aids) {
 /// Logarithmic, with the bounds; what lies far out becomes arrowheads.
 Axis aid_axis(const AidSummary& aid, double largest) {
   constexpr double kHighest = 1e3;
-  Axis axis{fmt::format("NIS / {}", aid.dimension), {}, AxisKind::log};
+  Axis axis{aid.dimension == 1 ? "NIS" : fmt::format("NIS / {}", aid.dimension), {}, AxisKind::log};
   axis.min = 0.5 * aid.single_band.low / aid.dimension;
   axis.max = 1.5 * std::clamp(largest, 10.0, kHighest);
   return axis;
@@ -67,6 +67,8 @@ Panel aid_panel(const RunData& data, const AidSummary& aid, const SquareHistory&
   const double largest =
       std::max(largest_finite(used.columns[0]), largest_finite(rejected.columns[0]));
   Panel panel = time_panel(data, aid_axis(aid, largest));
+  panel.x.min = 0;
+  panel.x.max = data.epoch_steps.last();
   panel.title = title;
   panel.note =
       fmt::format("mean {} · {} used, {} rejected", mean_text(aid), aid.used, aid.rejected);

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "foucault/core/constants.h"
+#include "foucault/plot/axis_scale.h"
 #include "foucault/plot/text.h"
 #include "run_panels.h"
 
@@ -49,15 +50,15 @@ std::vector<FigureLook> known_looks() {
        {{"mounting", "Mounting", "°", 1 / kDegree, {"pitch", "heading"}},
         {"wheel_scale", "Wheel scale", "%", 100, {""}},
         {"time_offset", "Time offset", "ms", 1000, {""}},
-        {"time_drift", "Drift of the time offset", "ppm", kPpm, {""}}}},
+        {"time_drift", "Time drift", "ppm", kPpm, {""}}}},
       {"calibration_scales",
        "Calibration: scale factors",
-       {{"gyro_scale", "Gyroscope", "ppm", kPpm, {"x", "y", "z"}},
-        {"accel_scale", "Accelerometer", "ppm", kPpm, {"x", "y", "z"}}}},
+       {{"gyro_scale", "Gyro scale", "ppm", kPpm, {"x", "y", "z"}},
+        {"accel_scale", "Accel. scale", "ppm", kPpm, {"x", "y", "z"}}}},
       {"calibration_cross_axes",
        "Calibration: cross-axis terms",
-       {{"gyro_cross_axis", "Gyroscope", "ppm", kPpm, {"xy", "yz", "zx", "xz", "yx", "zy"}},
-        {"accel_cross_axis", "Accelerometer", "ppm", kPpm, {"xy", "yz", "xz"}}}},
+       {{"gyro_cross_axis", "Gyro cross-axis", "ppm", kPpm, {"xy", "yz", "zx", "xz", "yx", "zy"}},
+        {"accel_cross_axis", "Accel. cross-axis", "ppm", kPpm, {"xy", "yz", "xz"}}}},
   };
 }
 
@@ -80,7 +81,8 @@ std::vector<FigureLook> figure_looks(const RunData& data) {
 
 /// One number of a block over time, in the unit that it is shown in.
 struct ShownRow {
-  std::string title;
+  std::string block;  ///< its title
+  std::string name;   ///< in the block; empty if it is the only one
   std::string unit;
   double prior = 0, prior_sigma = 0;
   double last = 0, last_sigma = 0;
@@ -88,6 +90,7 @@ struct ShownRow {
 
   /// The recording has told at least something of it.
   bool told() const { return last_sigma <= 0.7 * prior_sigma; }
+  std::string title() const { return name.empty() ? block : block + ", " + name; }
 };
 
 std::vector<double> scaled(std::vector<double> values, double factor) {
@@ -98,10 +101,10 @@ std::vector<double> scaled(std::vector<double> values, double factor) {
 ShownRow shown_row(const BlockHistory& block, const BlockLook& look, Eigen::Index row) {
   const auto i = static_cast<size_t>(row);
   const auto size = static_cast<size_t>(block.slow.block.size);
-  const std::string name = i < look.rows.size() ? look.rows[i] : std::to_string(i + 1);
   DecimatedTable::Rows rows = block.rows.rows();
   ShownRow shown;
-  shown.title = name.empty() ? look.title : fmt::format("{}, {}", look.title, name);
+  shown.block = look.title;
+  shown.name = i < look.rows.size() ? look.rows[i] : std::to_string(i + 1);
   shown.unit = look.unit;
   shown.prior = look.factor * block.prior[row];
   shown.prior_sigma = look.factor * block.prior_sigma[row];
@@ -120,29 +123,41 @@ void add_rows(const BlockHistory& block, const BlockLook& look, std::vector<Show
   }
 }
 
-Series prior_line(const ShownRow& row, double sign) {
-  const double at = row.prior + sign * 3 * row.prior_sigma;
-  Series series = line("prior ±3σ", Ink::gray, {row.t.front(), row.t.back()}, {at, at});
-  series.column = row.title + (sign < 0 ? " prior lower" : " prior upper");
-  series.dashed = true;
-  series.size = 1.4;
-  series.range_role = RangeRole::none;
-  return series;
+/// As many as two digits of the sigma have.
+int decimals_of(const ShownRow& row) {
+  if (!(row.last_sigma > 0) || !std::isfinite(row.last_sigma)) return 3;
+  return std::max(0, 1 - static_cast<int>(std::floor(std::log10(row.last_sigma))));
 }
 
 std::string value_text(const ShownRow& row) {
-  return fmt::format("{} ± {}{}{}", significant_text(row.last), significant_text(row.last_sigma, 2),
-                     row.unit == "°" ? "" : " ", row.unit);
+  const int decimals = decimals_of(row);
+  return fmt::format("{} ± {}{}{}", number_text(row.last, decimals),
+                     number_text(row.last_sigma, decimals), row.unit == "°" ? "" : " ", row.unit);
+}
+
+/// Not where it is so wide that the estimate would be a line beside it.
+void add_prior(const ShownRow& row, Panel& panel) {
+  constexpr double kWidest = 2;  // of the axis
+  if (row.told() && 6 * row.prior_sigma > kWidest * y_span(panel).width()) return;
+  for (const double sign : {-1.0, 1.0}) {
+    const double at = row.prior + sign * 3 * row.prior_sigma;
+    Series series = line("prior ±3σ", Ink::gray, {row.t.front(), row.t.back()}, {at, at});
+    series.column = row.title() + (sign < 0 ? " prior lower" : " prior upper");
+    series.dashed = true;
+    series.size = 1.4;
+    panel.series.push_back(std::move(series));
+  }
 }
 
 Panel row_panel(const RunData& data, const ShownRow& row) {
-  Panel panel = time_panel(data, {"", row.unit});
-  panel.title = row.title;
+  Panel panel = time_panel(data, {row.block, row.unit});
+  panel.title = row.name;
   panel.note = value_text(row);
-  panel.series = {bounds(row.t, row.value, row.sigma, row.title + " 3 sigma"), prior_line(row, -1),
-                  prior_line(row, 1), line("estimate", Ink::blue, row.t, row.value)};
-  panel.series.back().column = row.title;
-  panel.series.back().range_role = RangeRole::most;
+  panel.series = {bounds(row.t, row.value, row.sigma, row.title() + " 3 sigma"),
+                  line("estimate", Ink::blue, row.t, row.value)};
+  panel.series.back().column = row.title();
+  panel.series.back().range_role = RangeRole::typical;
+  add_prior(row, panel);
   return panel;
 }
 
@@ -150,14 +165,15 @@ Figure rows_figure(const RunData& data, const FigureLook& look, const std::vecto
                    const std::string& subtitle) {
   Figure figure = stacked_figure(
       look.name, look.title, subtitle,
-      "Estimates with their 3-sigma bounds and, where they are within the axes, those of the prior "
-      "(dashed); at the right what is known in the end, with 1 sigma. What the recording tells "
-      "narrows as the vehicle turns and accelerates and then stays within the bounds it had "
-      "before; what it does not tell keeps the width of its prior.");
+      "Estimates with their 3-sigma bounds and, where they are not far wider, those of the prior "
+      "(dashed); at the right what is known in the end, with 1 sigma. Axes are for what has "
+      "settled; the start may lie outside. What the recording tells narrows as the vehicle turns "
+      "and accelerates and then stays within the bounds it had before; what it does not tell keeps "
+      "the width of its prior. A smoother has one value for the whole recording.");
   const size_t count = rows.size();
   figure.columns = count == 4 ? 2 : static_cast<int>(std::min<size_t>(count, 3));
   const size_t columns = static_cast<size_t>(figure.columns);
-  figure.height_mm = 40 + 46 * static_cast<double>((count + columns - 1) / columns);
+  figure.height_mm = 40 + 50 * static_cast<double>((count + columns - 1) / columns);
   for (const ShownRow& row : rows) figure.panels.push_back(row_panel(data, row));
   return figure;
 }
@@ -167,12 +183,14 @@ Table calibration_table(const std::vector<ShownRow>& rows) {
   table.title = "At the end";
   table.header = {"", "Unit", "Estimate", "1σ", "1σ of the prior", "Share"};
   for (const ShownRow& row : rows) {
-    table.rows.push_back({row.title, row.unit, significant_text(row.last),
-                          significant_text(row.last_sigma), significant_text(row.prior_sigma),
+    table.rows.push_back({row.title(), row.unit, number_text(row.last, decimals_of(row)),
+                          number_text(row.last_sigma, decimals_of(row)),
+                          significant_text(row.prior_sigma),
                           number_text(100 * row.last_sigma / row.prior_sigma, 0) + " %"});
   }
   table.note =
-      "Lever arms are from the IMU, along the vehicle's axes as they were told; the mounting is "
+      "Share: of the prior's sigma that is left. Lever arms are from the IMU, along the vehicle's "
+      "axes as they were told; the mounting is "
       "what those axes have to be turned by.";
   return table;
 }
@@ -180,7 +198,7 @@ Table calibration_table(const std::vector<ShownRow>& rows) {
 std::string untold_text(const std::vector<ShownRow>& rows) {
   std::vector<std::string> untold;
   for (const ShownRow& row : rows) {
-    if (!row.told()) untold.push_back(row.title);
+    if (!row.told()) untold.push_back(row.title());
   }
   if (untold.empty()) return {};
   const bool one = untold.size() == 1;
