@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <string_view>
 #include <utility>
 
@@ -90,6 +91,7 @@ struct ShownRow {
 
   /// The recording has told at least something of it.
   bool told() const { return last_sigma <= 0.7 * prior_sigma; }
+  bool left_prior() const { return std::abs(last - prior) > 3 * prior_sigma; }
   std::string title() const { return name.empty() ? block : block + ", " + name; }
 };
 
@@ -135,18 +137,43 @@ std::string value_text(const ShownRow& row) {
                      number_text(row.last_sigma, decimals), row.unit == "°" ? "" : " ", row.unit);
 }
 
-/// Not where it is so wide that the estimate would be a line beside it.
-void add_prior(const ShownRow& row, Panel& panel) {
-  constexpr double kWidest = 2;  // of the axis
-  if (row.told() && 6 * row.prior_sigma > kWidest * y_span(panel).width()) return;
-  for (const double sign : {-1.0, 1.0}) {
-    const double at = row.prior + sign * 3 * row.prior_sigma;
-    Series series = line("prior ±3σ", Ink::gray, {row.t.front(), row.t.back()}, {at, at});
-    series.column = row.title() + (sign < 0 ? " prior lower" : " prior upper");
-    series.dashed = true;
-    series.size = 1.4;
-    panel.series.push_back(std::move(series));
+/// Of the estimate within its bounds after the first quarter of the run; empty without finite
+/// numbers.
+Span settled_span(const ShownRow& row) {
+  Span span{std::numeric_limits<double>::max(), std::numeric_limits<double>::lowest()};
+  const double settled = 0.75 * row.t.front() + 0.25 * row.t.back();
+  for (size_t i = 0; i < row.t.size(); ++i) {
+    const double width = 3 * row.sigma[i];
+    if (!(row.t[i] >= settled) || !std::isfinite(row.value[i]) || !std::isfinite(width)) continue;
+    span.min = std::min(span.min, row.value[i] - width);
+    span.max = std::max(span.max, row.value[i] + width);
   }
+  return span;
+}
+
+void add_prior_line(const ShownRow& row, double at, const char* edge, Panel& panel) {
+  Series series = line("prior ±3σ", Ink::gray, {row.t.front(), row.t.back()}, {at, at});
+  series.column = fmt::format("{} prior {}", row.title(), edge);
+  series.dashed = true;
+  series.size = 1.4;
+  panel.series.push_back(std::move(series));
+}
+
+/// The axis is for what has settled; the prior is left out where it is so wide that the estimate
+/// would be a line beside it.
+void add_axis_and_prior(const ShownRow& row, Panel& panel) {
+  constexpr double kWidest = 2;  // of the axis
+  constexpr double kMargin = 0.05;
+  Span span = settled_span(row);
+  if (!(span.width() >= 0)) return;
+  const Span prior{row.prior - 3 * row.prior_sigma, row.prior + 3 * row.prior_sigma};
+  if (!row.told() || prior.width() < kWidest * span.width()) {
+    span = {std::min(span.min, prior.min), std::max(span.max, prior.max)};
+    add_prior_line(row, prior.min, "lower", panel);
+    add_prior_line(row, prior.max, "upper", panel);
+  }
+  panel.y.min = span.min - kMargin * span.width();
+  panel.y.max = span.max + kMargin * span.width();
 }
 
 Panel row_panel(const RunData& data, const ShownRow& row) {
@@ -156,8 +183,7 @@ Panel row_panel(const RunData& data, const ShownRow& row) {
   panel.series = {bounds(row.t, row.value, row.sigma, row.title() + " 3 sigma"),
                   line("estimate", Ink::blue, row.t, row.value)};
   panel.series.back().column = row.title();
-  panel.series.back().range_role = RangeRole::typical;
-  add_prior(row, panel);
+  add_axis_and_prior(row, panel);
   return panel;
 }
 
@@ -166,8 +192,9 @@ Figure rows_figure(const RunData& data, const FigureLook& look, const std::vecto
   Figure figure = stacked_figure(
       look.name, look.title, subtitle,
       "Estimates with their 3-sigma bounds and, where they are not far wider, those of the prior "
-      "(dashed); at the right what is known in the end, with 1 sigma. Axes are for what has "
-      "settled; the start may lie outside. What the recording tells narrows as the vehicle turns "
+      "(dashed); at the right what is known in the end, with 1 sigma. Axes are for what follows "
+      "the first quarter. What the recording tells narrows as the vehicle "
+      "turns "
       "and accelerates and then stays within the bounds it had before; what it does not tell keeps "
       "the width of its prior. A smoother has one value for the whole recording.");
   const size_t count = rows.size();
@@ -195,16 +222,30 @@ Table calibration_table(const std::vector<ShownRow>& rows) {
   return table;
 }
 
-std::string untold_text(const std::vector<ShownRow>& rows) {
-  std::vector<std::string> untold;
+std::string listed_rows(const std::vector<ShownRow>& rows, bool (*belongs)(const ShownRow&)) {
+  std::vector<std::string> titles;
   for (const ShownRow& row : rows) {
-    if (!row.told()) untold.push_back(row.title());
+    if (belongs(row)) titles.push_back(row.title());
   }
-  if (untold.empty()) return {};
-  const bool one = untold.size() == 1;
-  return fmt::format("{}: the recording does not tell {}; {} at {}.", fmt::join(untold, "; "),
-                     one ? "it" : "them", one ? "it stays" : "they stay",
-                     one ? "its prior" : "their priors");
+  return fmt::format("{}", fmt::join(titles, "; "));
+}
+
+/// What the recording does not tell, and what has left its prior all the same.
+std::vector<std::string> untold_texts(const std::vector<ShownRow>& rows) {
+  const std::string untold =
+      listed_rows(rows, [](const ShownRow& row) { return !row.told() && !row.left_prior(); });
+  const std::string astray =
+      listed_rows(rows, [](const ShownRow& row) { return !row.told() && row.left_prior(); });
+  std::vector<std::string> texts;
+  if (!untold.empty()) {
+    texts.push_back(untold + ": the recording does not tell it; it stays at its prior.");
+  }
+  if (!astray.empty()) {
+    texts.push_back(astray +
+                    ": the recording does not tell it, yet it went further than 3 sigmas of its "
+                    "prior: something else is taken for it. Do not believe the value.");
+  }
+  return texts;
 }
 
 const BlockHistory* find_block(const RunData& data, std::string_view name) {
@@ -229,8 +270,7 @@ Section calibration_section(const RunData& data, const std::string& subtitle) {
     all.insert(all.end(), rows.begin(), rows.end());
   }
   if (all.empty()) return section;
-  const std::string untold = untold_text(all);
-  if (!untold.empty()) section.paragraphs.push_back(untold);
+  section.paragraphs = untold_texts(all);
   section.tables.push_back(calibration_table(all));
   return section;
 }

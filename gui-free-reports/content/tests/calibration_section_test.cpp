@@ -86,6 +86,21 @@ TEST(CalibrationSection, NamesWhatTheRecordingDoesNotTell) {
       << "nothing but the prior yet";
 }
 
+TEST(CalibrationSection, WarnsOfWhatWentAstray) {
+  state::Told told;
+  told.layout.add(state::block::gyro_scale, 1e-3);
+  RunReport report(kLabels, state::Mounting{}, told);
+  state::Epoch epoch = state::with_slow_blocks({}, told.layout);
+  epoch.slow << 0, 0.0066, 0;
+  state::slow_part(epoch.covariance)(2, 2) *= 0.01;
+  report.epoch(epoch);
+  const std::vector<std::string> words = section_of(report.page(), "Calibration").paragraphs;
+  ASSERT_EQ(words.size(), 2U);
+  EXPECT_EQ(words[0].find("Gyro scale, x: "), 0U);
+  EXPECT_EQ(words[1].find("Gyro scale, y: "), 0U);
+  EXPECT_NE(words[1].find("Do not believe"), std::string::npos);
+}
+
 TEST(CalibrationSection, EveryBlockHasItsPanels) {
   state::Told all;
   for (const state::Block& block :
