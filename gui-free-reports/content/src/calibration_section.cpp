@@ -193,10 +193,9 @@ Figure rows_figure(const RunData& data, const FigureLook& look, const std::vecto
       look.name, look.title, subtitle,
       "Estimates with their 3-sigma bounds and, where they are not far wider, those of the prior "
       "(dashed); at the right what is known in the end, with 1 sigma. Axes are for what follows "
-      "the first quarter. What the recording tells narrows as the vehicle "
-      "turns "
-      "and accelerates and then stays within the bounds it had before; what it does not tell keeps "
-      "the width of its prior. A smoother has one value for the whole recording.");
+      "the first quarter. What the recording tells narrows as the vehicle turns and accelerates "
+      "and then stays within the bounds it had before; what it does not tell keeps the width of "
+      "its prior. A smoother has one value for the whole recording.");
   const size_t count = rows.size();
   figure.columns = count == 4 ? 2 : static_cast<int>(std::min<size_t>(count, 3));
   const size_t columns = static_cast<size_t>(figure.columns);
