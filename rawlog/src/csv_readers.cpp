@@ -712,6 +712,51 @@ class ReferenceReader : public RecordReader {
   int64_t blank_ = 0;
 };
 
+// Wheels ----------------------------------------------------------------------------------------
+
+class WheelReader : public RecordReader {
+ public:
+  WheelReader(const WheelMapping& mapping, const std::string& path,
+              std::vector<std::string> notices)
+      : notices_(std::move(notices)),
+        table_(open_mapped_table(path)),
+        columns_(mapping, table_, "wheel", joined({{"speed"}})),
+        time_(mapping.time, columns_),
+        speed_(columns_.of("speed")),
+        factor_(unit_of(speed_units(), mapping.speed_unit).factor) {}
+
+  const TextTable& table() const override { return table_; }
+  int64_t without_fix() const override { return blank_; }
+  Notices notices() const override { return joined(notices_, columns_, table_); }
+
+  std::optional<Record> next() override {
+    while (const Row* row = table_.next()) {
+      columns_.check_width(*row);
+      if (!row->is_blank(speed_)) return parse(*row);
+      ++blank_;
+    }
+    return std::nullopt;
+  }
+
+ private:
+  WheelSpeed parse(const Row& row) {
+    WheelSpeed wheel;
+    wheel.forward = row.number(speed_) * factor_;
+    wheel.t_ns = time_.stamp(row);
+    order_.check(row, wheel.t_ns);
+    return wheel;
+  }
+
+  std::vector<std::string> notices_;
+  TextTable table_;
+  Columns columns_;
+  TimeColumn time_;
+  size_t speed_;
+  double factor_;
+  StampOrder order_;
+  int64_t blank_ = 0;
+};
+
 }  // namespace
 
 ImportMapping load_mapping(const MappingSource& source) {
@@ -721,6 +766,7 @@ ImportMapping load_mapping(const MappingSource& source) {
     check_lines(mapping.imu, "imu");
     check_lines(mapping.gnss, "gnss");
     check_lines(mapping.reference, "reference");
+    check_lines(mapping.wheel, "wheel");
     check_lines(mapping.gnss.quality_table, "gnss.quality_table");
     for (const std::string& axis : mapping.imu.axes) check_line(axis, "imu.axes");
   });
@@ -737,19 +783,21 @@ std::optional<std::string> input_path(const MappingSource& source,
   return (folder / file).string();  // an absolute `file` stays what it is
 }
 
-ImportMapping add_tables(const MappingSource& source, const std::optional<std::string>& imu,
-                         const std::optional<std::string>& reference, ImportInputs& inputs) {
-  if (source.mapping.empty() && (imu || reference)) {
-    throw UsageError("--imu and --reference need --mapping, which names their columns");
+ImportMapping add_tables(const MappingSource& source, const TableFiles& given,
+                         ImportInputs& inputs) {
+  if (source.mapping.empty() && (given.imu || given.reference || given.wheel)) {
+    throw UsageError("--imu, --reference and --wheel need --mapping, which names their columns");
   }
   ImportMapping mapping = source.mapping.empty() ? ImportMapping{} : load_mapping(source);
-  const auto imu_path = input_path(source, imu, mapping.imu.file);
-  const auto reference_path = input_path(source, reference, mapping.reference.file);
+  const auto imu_path = input_path(source, given.imu, mapping.imu.file);
+  const auto reference_path = input_path(source, given.reference, mapping.reference.file);
+  const auto wheel_path = input_path(source, given.wheel, mapping.wheel.file);
   naming_mapping(source.mapping, [&] {
     if (imu_path) inputs.imu = make_imu_reader(mapping.imu, *imu_path);
     if (reference_path) {
       inputs.reference = make_reference_reader(mapping.reference, *reference_path);
     }
+    if (wheel_path) inputs.wheel = make_wheel_reader(mapping.wheel, *wheel_path);
     inputs.mounting = mapping.imu.mounting();
     inputs.lever_arm_v = mapping.lever_arm();
   });
@@ -776,6 +824,13 @@ std::unique_ptr<RecordReader> make_reference_reader(const ReferenceMapping& mapp
   Notices notices = find_clock(found, path, "reference");
   append(notices, find_units(found, nullptr, "reference", reference_roles(), path));
   return std::make_unique<ReferenceReader>(found, path, notices);
+}
+
+std::unique_ptr<RecordReader> make_wheel_reader(const WheelMapping& mapping,
+                                                const std::string& path) {
+  WheelMapping found = mapping;
+  Notices notices = find_clock(found, path, "wheel");
+  return std::make_unique<WheelReader>(found, path, notices);
 }
 
 double height_offset(const std::string& height, const std::optional<double>& separation,

@@ -33,16 +33,22 @@ std::optional<std::string> input_path(const MappingSource& source,
                                       const std::optional<std::string>& given,
                                       const std::string& file);
 
-/// Tables of an IMU and a reference beside a receiver's own format, if there are any, and what a
-/// mapping says of them; without a file of it (`source.mapping` empty) its defaults. Throws
-/// UsageError.
-ImportMapping add_tables(const MappingSource& source, const std::optional<std::string>& imu,
-                         const std::optional<std::string>& reference, ImportInputs& inputs);
+/// Files of tables that are told on the command line, instead of the mapping's.
+struct TableFiles {
+  std::optional<std::string> imu, reference, wheel;
+};
+
+/// Tables of an IMU, a reference and wheel speeds, if there are any, and what a mapping says of
+/// them; without a file of it (`source.mapping` empty) its defaults. Throws UsageError.
+ImportMapping add_tables(const MappingSource& source, const TableFiles& given,
+                         ImportInputs& inputs);
 
 std::unique_ptr<RecordReader> make_imu_reader(const ImuMapping& mapping, const std::string& path);
 std::unique_ptr<RecordReader> make_gnss_reader(const GnssMapping& mapping, const std::string& path);
 std::unique_ptr<RecordReader> make_reference_reader(const ReferenceMapping& mapping,
                                                     const std::string& path);
+std::unique_ptr<RecordReader> make_wheel_reader(const WheelMapping& mapping,
+                                                const std::string& path);
 
 /// Geoid separation to be added to heights [m]; 0 for ellipsoidal ones.
 /// Throws UsageError if msl has none.

@@ -10,7 +10,8 @@ namespace foucault::rawlog {
 ImportSummary import_csv(const CsvImport& options) {
   const rawlog::MappingSource source{options.mapping, options.data_dir};
   ImportInputs inputs;
-  const ImportMapping mapping = add_tables(source, options.imu, options.reference, inputs);
+  const ImportMapping mapping =
+      add_tables(source, {options.imu, options.reference, options.wheel}, inputs);
   const auto gnss = input_path(source, options.gnss, mapping.gnss.file);
   const bool imu = inputs.imu != nullptr;
   if (!imu || !gnss) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <deque>
+#include <utility>
 
 #include "foucault/core/constants.h"
 #include "foucault/core/error.h"
@@ -18,8 +19,9 @@ using rawlog::TextTable;
 
 namespace {
 
-TextTable open_table(const std::string& path) {
-  return TextTable(path, TextTable::Separator::space, "#%");
+TextTable open_table(const std::string& path,
+                     TextTable::Separator separator = TextTable::Separator::space) {
+  return TextTable(path, separator, "#%");
 }
 
 void require_columns(const Row& row, size_t expected) {
@@ -208,6 +210,46 @@ class I2navReference : public RecordReader {
   rawlog::StampOrder order_;
 };
 
+class I2navWheel : public RecordReader {
+ public:
+  I2navWheel(const std::string& path, WeekClock clock)
+      : table_(open_table(path, TextTable::Separator::space_or_comma)), clock_(clock) {}
+
+  const TextTable& table() const override { return table_; }
+  int64_t without_fix() const override { return blank_; }
+
+  std::optional<Record> next() override {
+    constexpr size_t kColumns = 2;
+    while (const Row* row = table_.next()) {
+      if (std::exchange(first_, false) && is_header(*row)) continue;
+      require_columns(*row, kColumns);
+      if (!row->is_blank(1)) return parse(*row);
+      ++blank_;
+    }
+    return std::nullopt;
+  }
+
+ private:
+  static bool is_header(const Row& row) {
+    constexpr std::string_view kInNumbers = "+-.0123456789";
+    return !row.is_blank(0) && kInNumbers.find(row.text(0).front()) == std::string_view::npos;
+  }
+
+  WheelSpeed parse(const Row& row) {
+    WheelSpeed wheel;
+    wheel.forward = row.number(1);
+    wheel.t_ns = clock_.stamp(row, 0);
+    order_.check(row, wheel.t_ns);
+    return wheel;
+  }
+
+  TextTable table_;
+  WeekClock clock_;
+  rawlog::StampOrder order_;
+  bool first_ = true;
+  int64_t blank_ = 0;
+};
+
 /// A number that stands at the beginning of the first good row.
 int64_t first_number(const std::string& path, int decimals, bool skip_bad_rows) {
   TextTable table = open_table(path);
@@ -243,6 +285,7 @@ ImportSummary import_i2nav(const I2navImport& options) {
   inputs.imu = std::make_unique<I2navImu>(options.imu, clock);
   inputs.gnss = std::make_unique<I2navGnss>(options.gnss, clock, options.quality);
   if (options.reference) inputs.reference = std::make_unique<I2navReference>(*options.reference);
+  if (options.wheel) inputs.wheel = std::make_unique<I2navWheel>(*options.wheel, clock);
   inputs.lever_arm_v = options.lever_arm;
   inputs.sensor.samples = "interval_mean";  // increments
   return rawlog::run_import(options, std::move(inputs));

@@ -176,10 +176,16 @@ void GnssMapping::fields(ConfigFields& f) {
   f.text_map("quality_table", quality_table, "value in the column: quality, or none");
 }
 
+void WheelMapping::fields(ConfigFields& f) {
+  TableMapping::fields(f);
+  f.text("speed_unit", speed_unit, names_of(speed_units()), "unit of the speed");
+}
+
 void ImportMapping::fields(ConfigFields& f) {
   f.section("imu", imu, "IMU table");
   f.section("gnss", gnss, "GNSS table");
   f.section("reference", reference, "reference trajectory, if there is one");
+  f.section("wheel", wheel, "table of wheel speeds, if they have one of their own");
   f.numbers("lever_arm_m", lever_arm_m, kAnyNumber,
             "IMU to antenna, forward, right, down; empty: not known, zero is written [m]");
 }

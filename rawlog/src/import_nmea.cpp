@@ -241,7 +241,8 @@ std::unique_ptr<RecordReader> make_nmea_reader(const GnssMapping& mapping, const
 ImportSummary import_nmea(const NmeaImport& options) {
   const MappingSource source{options.mapping, options.data_dir};
   ImportInputs inputs;
-  const ImportMapping mapping = add_tables(source, options.imu, options.reference, inputs);
+  const ImportMapping mapping =
+      add_tables(source, {options.imu, options.reference, options.wheel}, inputs);
   const auto gnss = input_path(source, options.gnss, mapping.gnss.file);
   if (!gnss) throw UsageError("no NMEA file: give --gnss, or gnss.file in the mapping");
   inputs.gnss = make_nmea_reader(mapping.gnss, {*gnss, *gnss, {}});

@@ -32,8 +32,8 @@ ImportSummary import_raw_observations(const RawGnssImport& options, ImportInputs
 
 ImportSummary import_rinex(const RawGnssImport& options) {
   ImportInputs inputs;
-  const ImportMapping mapping =
-      add_tables({options.mapping, options.data_dir}, options.imu, options.reference, inputs);
+  const ImportMapping mapping = add_tables({options.mapping, options.data_dir},
+                                           {options.imu, options.reference, options.wheel}, inputs);
   if (options.lever_arm) inputs.lever_arm_v = options.lever_arm;
   return import_raw_observations(options, std::move(inputs), mapping);
 }

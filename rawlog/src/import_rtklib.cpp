@@ -556,7 +556,8 @@ std::unique_ptr<RecordReader> make_pos_reader(const GnssMapping& mapping, const 
 ImportSummary import_rtklib(const RtklibImport& options) {
   const rawlog::MappingSource source{options.mapping, options.data_dir};
   ImportInputs inputs;
-  const ImportMapping mapping = add_tables(source, options.imu, options.reference, inputs);
+  const ImportMapping mapping =
+      add_tables(source, {options.imu, options.reference, options.wheel}, inputs);
   const auto gnss = input_path(source, options.gnss, mapping.gnss.file);
   const bool imu = inputs.imu != nullptr;
   if (!imu || !gnss) {

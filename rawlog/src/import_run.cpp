@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <ctime>
 #include <deque>
@@ -25,8 +24,9 @@ namespace {
 /// some wait: the rows that follow tell whether there is a hole, or the stamps were wrong.
 class Input {
  public:
-  Input(std::unique_ptr<RecordReader> reader, bool skip_bad_rows)
-      : reader_(std::move(reader)), skip_bad_rows_(skip_bad_rows) {
+  /// `wheels_alone`: it has nothing but wheel speeds.
+  Input(std::unique_ptr<RecordReader> reader, bool skip_bad_rows, bool wheels_alone = false)
+      : reader_(std::move(reader)), skip_bad_rows_(skip_bad_rows), wheels_alone_(wheels_alone) {
     summary_.file = reader_->table().path();
     fill();
   }
@@ -38,7 +38,7 @@ class Input {
   Record take() {
     Record record = std::move(ahead_.front().record);
     ahead_.pop_front();
-    if (!std::holds_alternative<WheelSpeed>(record)) count(stamp(record));
+    if (!is_beside(record)) count(stamp(record));
     fill();
     return record;
   }
@@ -85,10 +85,15 @@ class Input {
   void skip_last(int64_t follows_ns) {
     const Ahead last = std::move(ahead_.back());
     ahead_.pop_back();
-    if (std::holds_alternative<WheelSpeed>(last.record)) return;  // its row has another record
+    if (is_beside(last.record)) return;
     skip(fmt::format(
         "{}: the stamp {} lies ahead of one that follows, {}; correct or remove the row",
         reader_->table().place(last.position), utc_text(stamp(last.record)), utc_text(follows_ns)));
+  }
+
+  /// A wheel speed whose row has another record, which counts.
+  bool is_beside(const Record& record) const {
+    return !wheels_alone_ && std::holds_alternative<WheelSpeed>(record);
   }
 
   void skip(const std::string& why) {
@@ -103,6 +108,7 @@ class Input {
 
   std::unique_ptr<RecordReader> reader_;
   bool skip_bad_rows_;
+  bool wheels_alone_;
   bool over_ = false;
   std::deque<Ahead> ahead_;
   std::optional<int64_t> newest_ns_;
@@ -144,22 +150,49 @@ class Output {
   ImportSummary summary_;
 };
 
-Input* earliest(std::optional<Input>& imu, Input& gnss, std::optional<Input>& reference) {
-  Input* first = nullptr;
-  const std::array<Input*, 3> inputs{&gnss, reference ? &*reference : nullptr,
-                                     imu ? &*imu : nullptr};
-  for (Input* input : inputs) {
-    if (input == nullptr || input->head() == nullptr) continue;
-    if (first == nullptr || stamp(*input->head()) < stamp(*first->head())) first = input;
-  }
-  return first;
+/// None without a reader.
+std::optional<Input> optional_input(std::unique_ptr<RecordReader> reader, bool skip_bad_rows,
+                                    bool wheels_alone = false) {
+  if (!reader) return std::nullopt;
+  return Input(std::move(reader), skip_bad_rows, wheels_alone);
 }
 
-void check_not_empty(const ImportStream& stream, const char* what) {
+/// The files, opened in this order.
+struct Inputs {
+  std::optional<Input> imu;
+  Input gnss;
+  std::optional<Input> reference, wheel;
+
+  Inputs(ImportInputs& from, bool skip_bad_rows)
+      : imu(optional_input(std::move(from.imu), skip_bad_rows)),
+        gnss(std::move(from.gnss), skip_bad_rows),
+        reference(optional_input(std::move(from.reference), skip_bad_rows)),
+        wheel(optional_input(std::move(from.wheel), skip_bad_rows, true)) {}
+
+  /// With the record that comes next; null at the end.
+  Input* earliest() {
+    Input* first = nullptr;
+    const auto of = [](std::optional<Input>& input) { return input ? &*input : nullptr; };
+    for (Input* input : {&gnss, of(reference), of(wheel), of(imu)}) {
+      if (input == nullptr || input->head() == nullptr) continue;
+      if (first == nullptr || stamp(*input->head()) < stamp(*first->head())) first = input;
+    }
+    return first;
+  }
+
+  void summarize(ImportSummary& summary) const {
+    if (imu) summary.imu = imu->summary();
+    summary.gnss = gnss.summary();
+    if (reference) summary.reference = reference->summary();
+    if (wheel) summary.wheel = wheel->summary();
+  }
+};
+
+void check_not_empty(const ImportStream& stream, const char* what, const char* missing = "values") {
   if (stream.written > 0) return;
   throw DataError(fmt::format(
-      "'{}' has no usable {} row ({} skipped, {} without a position){}{}", stream.file, what,
-      stream.skipped, stream.without_fix,
+      "'{}' has no usable {} row ({} skipped, {} without {}){}{}", stream.file, what,
+      stream.skipped, stream.without_fix, missing,
       stream.first_skipped.empty() ? "; check the file" : "; the first: ", stream.first_skipped));
 }
 
@@ -183,22 +216,37 @@ void check_rate(const ImportStream& stream) {
                   stream.written, stream.file, seconds_between(stream.first_ns, stream.last_ns)));
 }
 
+void check_wheel(const ImportSummary& summary) {
+  const ImportStream& wheel = *summary.wheel;
+  check_not_empty(wheel, "wheel speed");
+  check_rate(wheel);
+  if (!summary.imu.file.empty()) check_overlap(summary.imu, wheel, "wheel speeds");
+  if (summary.wheel_speeds == wheel.written) return;
+  throw UsageError(
+      fmt::format("'{}' and '{}' both have wheel speeds; leave out the columns of the one "
+                  "(in a mapping imu.columns.wheel_speed) or the file of the other",
+                  summary.imu.file, wheel.file));
+}
+
 void check(const ImportSummary& summary) {
   const bool has_imu = !summary.imu.file.empty();
   if (has_imu) check_not_empty(summary.imu, "IMU");
-  check_not_empty(summary.gnss, "GNSS");
+  check_not_empty(summary.gnss, "GNSS", "a position");
   if (has_imu) check_rate(summary.imu);
   check_rate(summary.gnss);
   if (has_imu) check_overlap(summary.imu, summary.gnss, "GNSS");
-  if (!summary.reference) return;
-  check_not_empty(*summary.reference, "reference");
-  if (has_imu) check_overlap(summary.imu, *summary.reference, "reference");
+  if (summary.reference) {
+    check_not_empty(*summary.reference, "reference");
+    if (has_imu) check_overlap(summary.imu, *summary.reference, "reference");
+  }
+  if (summary.wheel) check_wheel(summary);
 }
 
 /// The recording itself is what must not get lost.
 void check_not_an_input(const std::string& out, const ImportInputs& inputs) {
   std::vector<std::string> paths{inputs.mapping};
-  for (const RecordReader* reader : {inputs.imu.get(), inputs.gnss.get(), inputs.reference.get()}) {
+  for (const RecordReader* reader :
+       {inputs.imu.get(), inputs.gnss.get(), inputs.reference.get(), inputs.wheel.get()}) {
     if (reader != nullptr) paths.push_back(reader->table().path());
   }
   for (const std::string& path : paths) {
@@ -260,23 +308,16 @@ std::optional<int64_t> IntervalLengths::ending_at(int64_t t_ns) {
 ImportSummary run_import(const ImportOptions& options, ImportInputs inputs) {
   constexpr int64_t kRecordsPerReport = 2000;
   check_not_an_input(options.out, inputs);
-  std::optional<Input> imu;
-  if (inputs.imu) imu.emplace(std::move(inputs.imu), options.skip_bad_rows);
-  Input gnss(std::move(inputs.gnss), options.skip_bad_rows);
-  std::optional<Input> reference;
-  if (inputs.reference) reference.emplace(std::move(inputs.reference), options.skip_bad_rows);
-
+  Inputs files(inputs, options.skip_bad_rows);
   Output output(options.out, inputs);
   int64_t records = 0;
-  while (Input* input = earliest(imu, gnss, reference)) {
+  while (Input* input = files.earliest()) {
     output.write(input->take());
     if (options.progress && ++records % kRecordsPerReport == 0)
-      options.progress((imu ? *imu : gnss).progress());
+      options.progress((files.imu ? *files.imu : files.gnss).progress());
   }
   ImportSummary& summary = output.summary();
-  if (imu) summary.imu = imu->summary();
-  summary.gnss = gnss.summary();
-  if (reference) summary.reference = reference->summary();
+  files.summarize(summary);
   check(summary);
   output.finish();
   if (options.progress) options.progress(1);

@@ -91,6 +91,7 @@ struct ImportInputs {
   std::unique_ptr<RecordReader> imu;  ///< may be null
   std::unique_ptr<RecordReader> gnss;
   std::unique_ptr<RecordReader> reference;  ///< may be null
+  std::unique_ptr<RecordReader> wheel;      ///< of wheel speeds alone; may be null
   std::string mapping;                      ///< its file, if there is one
   state::Mounting mounting;
   std::optional<Eigen::Vector3d> lever_arm_v;  ///< IMU to antenna [m]; none: not known

@@ -385,8 +385,8 @@ void add_own_imu(const UbxImport& options, const UbxSurvey& survey, ImportInputs
 ImportSummary import_ubx(const UbxImport& options) {
   const UbxSurvey survey(options.rover);
   ImportInputs inputs;
-  const ImportMapping mapping =
-      add_tables({options.mapping, options.data_dir}, options.imu, options.reference, inputs);
+  const ImportMapping mapping = add_tables({options.mapping, options.data_dir},
+                                           {options.imu, options.reference, options.wheel}, inputs);
   if (options.lever_arm) inputs.lever_arm_v = options.lever_arm;
   add_own_imu(options, survey, inputs);
   if (options.base || (survey.fixes == 0 && survey.raw_observations)) {

@@ -19,10 +19,9 @@ class Columns {
  public:
   /// Reads what stands before the first row: other lines, the header if there is one (the first
   /// line that has all named columns), units under it. Finds the separator by them and by the rows,
-  /// whose width counts where the header has another. `section` (imu, gnss, reference) is for
-  /// messages.
-  /// Throws UsageError for unknown roles, columns that are not there or stand there twice, and
-  /// commas that may be decimal or between thousands.
+  /// whose width counts where the header has another. `section` (imu, gnss, reference, wheel) is
+  /// for messages. Throws UsageError for unknown roles, columns that are not there or stand there
+  /// twice, and commas that may be decimal or between thousands.
   Columns(const TableMapping& mapping, TextTable& table, const std::string& section,
           const std::vector<std::string>& roles);
 

@@ -751,7 +751,8 @@ TEST(Mapping, HelpNamesEveryKey) {
   for (const char* key :
        {"imu.decimal", "imu.separator", "imu.gyro_scale", "imu.accel_scale", "imu.wheel_speed_unit",
         "gnss.height_unit", "gnss.height_m", "gnss.velocity_unit", "gnss.sigma_unit",
-        "reference.height_unit", "reference.velocity_unit", "iso8601", "ddmm", "cm_s2", "knots"}) {
+        "reference.height_unit", "reference.velocity_unit", "wheel.speed_unit",
+        "wheel.time.offset_s", "iso8601", "ddmm", "cm_s2", "knots"}) {
     EXPECT_THAT(help, HasSubstr(key));
   }
 }

@@ -39,7 +39,9 @@ constexpr const char* kExamples =
     "  foucault import novatel drive.gps --lever-arm 0.3,0,-0.5 --out drive.rawlog\n"
     "  foucault import ulog flight.ulg --lever-arm 0.1,0,-0.2 --out flight.rawlog\n"
     "  foucault import i2nav --imu ADIS16465.txt --gnss GNSS_RTK.pos --reference truth.nav \\\n"
-    "      --gps-week 2017 --lever-arm -0.073,0.302,0.087 --out trip.rawlog";
+    "      --gps-week 2017 --lever-arm -0.073,0.302,0.087 --out trip.rawlog\n"
+    "  foucault import i2nav --imu imu.txt --gnss rtk.pos --wheel wheel.csv --gps-week 2200 \\\n"
+    "      --lever-arm 0.1,-0.3,-0.8 --out drive.rawlog";
 
 }  // namespace
 

@@ -42,7 +42,9 @@ void report_import(Console& console, const rawlog::ImportSummary& summary, const
   }
   console.say(
       fmt::format("{:<10} {}; {} with velocity", "fixes", qualities, summary.with_velocity));
-  if (summary.wheel_speeds > 0) {
+  if (summary.wheel) {
+    report_stream(console, "wheels", *summary.wheel);
+  } else if (summary.wheel_speeds > 0) {
     console.say(fmt::format("{:<10} {}", "wheels", summary.wheel_speeds));
   }
   if (!summary.imu.file.empty()) {

@@ -31,6 +31,7 @@ void add_raw_gnss_options(CLI::App& app, rawlog::RawGnssImport& import, RawGnssT
                  "Folder of the files that the mapping names; without it the mapping's own");
   app.add_option("--imu", import.imu, "IMU table, told by --mapping");
   app.add_option("--reference", import.reference, "Reference table, told by --mapping");
+  app.add_option("--wheel", import.wheel, "Table of wheel speeds, told by --mapping");
   app.add_option("--lever-arm", texts.lever_arm, kLeverArmHelp);
   add_import_options(app, import);
 }

@@ -43,6 +43,7 @@ std::function<void(Call&)> declare_mapped(CLI::App& app,
   app.add_option("--imu", o->import.imu, "IMU table, instead of the mapping's");
   app.add_option("--gnss", o->import.gnss, gnss_help);
   app.add_option("--reference", o->import.reference, "Reference table, instead of the mapping's");
+  app.add_option("--wheel", o->import.wheel, "Table of wheel speeds, instead of the mapping's");
   app.add_option("--lever-arm", o->lever_arm, kLeverArmHelp);
   add_import_options(app, o->import);
   add_help_text(app, "--help-mapping", "List every key of a mapping, with default and meaning",
@@ -91,6 +92,10 @@ std::function<void(Call&)> declare_import_i2nav(CLI::App& app) {
                  "Fixes: sow, latitude, longitude [deg], height [m], sigma north, east, down [m]")
       ->required();
   app.add_option("--reference", o->import.reference, "Reference trajectory (.nav)");
+  app.add_option(
+      "--wheel", o->import.wheel,
+      "Wheel speeds, if they have a file of their own: sow, speed [m/s], a header or not "
+      "(.txt, .csv or .gz)");
   app.add_option("--gps-week", o->import.gps_week,
                  "GPS week of the first row; without it the reference's");
   app.add_option("--lever-arm", o->lever_arm, kLeverArmHelp)->required();

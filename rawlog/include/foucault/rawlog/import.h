@@ -43,6 +43,7 @@ struct ImportSummary {
   ImportStream imu;  ///< without a file if there is none
   ImportStream gnss;
   std::optional<ImportStream> reference;
+  std::optional<ImportStream> wheel;  ///< if wheel speeds have a file of their own
   int64_t wheel_speeds = 0;
   int64_t with_velocity = 0;
   std::map<FixQuality, int64_t> qualities;

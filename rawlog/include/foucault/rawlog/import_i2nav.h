@@ -15,10 +15,13 @@ namespace foucault::rawlog {
 ///   13 columns: then velocity north, east, down [m/s] and its three sigmas.
 /// Reference (.nav): week, sow, latitude, longitude [deg], height [m], velocity north, east, down
 ///   [m/s], roll, pitch, heading [deg] of the IMU.
+/// Wheel: sow, speed [m/s], separated by blanks or commas; a first line may name them. Rows without
+///   a speed are counted.
 struct I2navImport : ImportOptions {
   std::string imu;
   std::string gnss;
   std::optional<std::string> reference;
+  std::optional<std::string> wheel;
   std::optional<int> gps_week;  ///< of the first row; without it the reference's
   Eigen::Vector3d lever_arm = Eigen::Vector3d::Zero();  ///< IMU to antenna, forward-right-down [m]
   FixQuality quality = FixQuality::unknown;             ///< of all fixes: the file does not say

@@ -130,12 +130,21 @@ class GnssMapping : public PositionMapping {
 /// More roles: velocity_north, velocity_east, velocity_down; roll, pitch, heading. Pose of the IMU.
 class ReferenceMapping : public PositionMapping {};
 
+/// Wheel speeds in a table of their own. Roles: time, date, week; speed (forward).
+class WheelMapping : public TableMapping {
+ public:
+  std::string speed_unit = "m_s";
+
+  void fields(ConfigFields& f) override;
+};
+
 /// The whole file.
 class ImportMapping : public Configurable {
  public:
   ImuMapping imu;
   GnssMapping gnss;
   ReferenceMapping reference;
+  WheelMapping wheel;
   std::vector<double> lever_arm_m;  ///< IMU to antenna, forward-right-down; empty: not known
 
   void fields(ConfigFields& f) override;

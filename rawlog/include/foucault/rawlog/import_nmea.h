@@ -18,7 +18,7 @@ namespace foucault::rawlog {
 struct NmeaImport : ImportOptions {
   std::string mapping;  ///< YAML; may be empty without an IMU
   std::optional<std::string> data_dir;
-  std::optional<std::string> imu, gnss, reference;
+  std::optional<std::string> imu, gnss, reference, wheel;
   std::optional<Eigen::Vector3d> lever_arm;
 };
 

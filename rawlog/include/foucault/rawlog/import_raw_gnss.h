@@ -22,7 +22,7 @@ struct RawGnssImport : ImportOptions {
   std::optional<std::string> rtklib_options;  ///< a file of rnx2rtkp (-k) instead of our own
   std::string mapping;                        ///< YAML; may be empty without a table
   std::optional<std::string> data_dir;
-  std::optional<std::string> imu, reference;
+  std::optional<std::string> imu, reference, wheel;
   /// IMU to antenna, forward-right-down [m]; without it the mapping's.
   std::optional<Eigen::Vector3d> lever_arm;
 };
