@@ -108,7 +108,8 @@ TEST_F(Evaluate, TellsWhatPartsOfTheConfigurationAreWorth) {
                        "aids.gnss_velocity=off", "--set", "aids.zero_velocity=off", "--set",
                        "aids.wheel_speed=off", "--set", "calibrate.mounting=on"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  const std::vector<std::string> parts{"", "nonholonomic", "aids", "calibration", "both"};
+  const std::vector<std::string> parts{"", "nonholonomic", "aids", "calibration",
+                                       "aids and calibration"};
   const json metrics = json::parse(folder_.text("out/metrics.json"));
   ASSERT_EQ(metrics["ablation"].size(), parts.size());
   for (std::size_t i = 0; i < parts.size(); ++i) {

@@ -83,6 +83,7 @@ std::function<void(Call&)> declare_evaluate(CLI::App& app) {
       "\nExamples:\n"
       "  foucault evaluate trip.rawlog --out trip-outages\n"
       "  foucault evaluate a.rawlog b.rawlog --config car.yaml --methods ekf,refined --out both\n"
+      "  foucault evaluate trip.rawlog --methods ekf --ablate --out trip-worth\n"
       "  foucault evaluate short.rawlog --set outages.first_s=85 --set outages.length_s=15 \\\n"
       "      --set outages.period_s=45 --set outages.shifts_s=[0] --out short\n"
       "Outages come from the keys outages.* of the configuration; by default 60 s every 150 s "

@@ -220,7 +220,7 @@ std::vector<Part> parts_of(const Settings& settings) {
   const bool aided = !parts.empty();
   if (aided) parts.push_back({"aids", {no_aids}});
   if (calibrates) parts.push_back({"calibration", {no_calibration}});
-  if (aided && calibrates) parts.push_back({"both", {no_aids, no_calibration}});
+  if (aided && calibrates) parts.push_back({"aids and calibration", {no_aids, no_calibration}});
   return parts;
 }
 

@@ -207,7 +207,7 @@ TEST(WithPartsOff, EachAidAllOfThemCalibrationAndBoth) {
   const Settings& calibration_off = ablation.cases[4].settings;
   EXPECT_EQ(calibration_off.calibrate.layout().slow_size(), 0);
   EXPECT_EQ(calibration_off.aids.in_use().size(), 2u);
-  EXPECT_EQ(ablation.names[5].without, "both");
+  EXPECT_EQ(ablation.names[5].without, "aids and calibration");
 
   settings.aids.mode = settings.calibrate.mode = "none";
   EXPECT_THROW(with_parts_off(cross({"a.rawlog"}, {"ekf"}, settings)), UsageError);
