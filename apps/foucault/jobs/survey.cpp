@@ -3,6 +3,7 @@
 #include <cmath>
 #include <optional>
 
+#include "foucault/calibration/noise_fit.h"
 #include "foucault/core/error.h"
 #include "foucault/rawlog/rawlog_source.h"
 #include "methods.h"
@@ -12,15 +13,23 @@ namespace {
 
 class Watcher : public state::Sink {
  public:
-  void epoch(const state::Epoch& epoch) override { last = epoch; }
+  void epoch(const state::Epoch& epoch) override {
+    way.epoch(epoch);
+    last = epoch;
+  }
+  void fix(const state::FixResult& result) override {
+    if (result.verdict == state::FixVerdict::used) way.used(result.t_ns);
+  }
   void observation(const state::ObservationResult& result) override {
     if (result.used) ++used[std::string(result.name)];
   }
+
   std::optional<state::Epoch> last;
   std::map<std::string, int> used;
+  calibration::WayRecorder way;
 };
 
-/// A filter through the log; null where it cannot be processed, which the run itself tells.
+/// A filter through the log; none where it cannot be processed, which the run itself tells.
 std::optional<Watcher> look_through(const std::string& log, const Settings& settings,
                                     Console& console) {
   Watcher watcher;
@@ -29,6 +38,7 @@ std::optional<Watcher> look_through(const std::string& log, const Settings& sett
     const std::unique_ptr<state::Estimator> estimator =
         find_method("ekf").make(settings, source.mounting(), watcher);
     while (const std::optional<Measurement> measurement = source.next()) {
+      watcher.way.add(*measurement);
       estimator->process(*measurement);
       console.progress("looking through", source.progress());
     }
@@ -52,38 +62,66 @@ std::optional<double> rest_of_offset(const Watcher& watcher, const state::Layout
   return value;
 }
 
+bool uses(const Watcher& watcher, const char* aid) {
+  constexpr int kTold = 10;  // fewer tell nothing of what they depend on
+  const auto count = watcher.used.find(aid);
+  return count != watcher.used.end() && count->second >= kTold;
+}
+
 bool leaves_open(const Settings& settings) {
   const state::CalibrateOptions& c = settings.calibrate;
   const measurement::AidOptions& aids = settings.aids;
   if (c.mode == "none") return false;
   const bool wheels = aids.uses(aids.nonholonomic) || aids.uses(aids.wheel_speed);
-  return c.time_offset != "off" || (wheels && (c.mounting == "auto" || c.wheel_scale == "auto" ||
-                                               c.wheel_lever_arm == "auto"));
+  return c.time_offset != "off" || c.imu_noise != "off" ||
+         (wheels &&
+          (c.mounting == "auto" || c.wheel_scale == "auto" || c.wheel_lever_arm == "auto"));
 }
 
 }  // namespace
 
+/// The noise is raised once the clocks agree to about what is linear, after the first pass.
 Survey Surveyor::survey(const std::string& log, Settings settings) {
-  constexpr int kMostPasses = 3;
+  constexpr int kMostPasses = 4;
   constexpr double kMost = 1;  // [s]; as the key
-  constexpr int kTold = 10;    // measurements: fewer tell nothing of what they depend on
+  bool asked = false;          // for the noise
   Survey found;
   found.time_offset_s = settings.calibrate.time_offset_s;
   settings.calibrate = settings.calibrate.resolved({true, true});
   for (int pass = 0; pass < kMostPasses; ++pass) {
     const std::optional<Watcher> watcher = look_through(log, settings, console_);
     if (!watcher) break;
-    const auto used = [&](const char* aid) {
-      const auto count = watcher->used.find(aid);
-      return count != watcher->used.end() && count->second >= kTold;
-    };
-    found.carried = {used("nonholonomic"), used("wheel_speed")};
+    found.carried = {uses(*watcher, "nonholonomic"), uses(*watcher, "wheel_speed")};
     const std::optional<double> rest = rest_of_offset(*watcher, settings.calibrate.layout());
-    if (!rest || std::abs(found.time_offset_s + *rest) > kMost) break;
-    found.time_offset_s += *rest;
-    settings.calibrate.time_offset_s = settings.rawlog.fix_delay_s = found.time_offset_s;
+    const bool moves = rest && std::abs(found.time_offset_s + *rest) < kMost;
+    const bool asks = settings.calibrate.imu_noise == "on" && !asked && (pass > 0 || !moves);
+    asked |= asks;
+    const bool raised = asks && raise_noise(*watcher->way.way(), settings, found);
+    if (moves) {
+      found.time_offset_s += *rest;
+      settings.calibrate.time_offset_s = settings.rawlog.fix_delay_s = found.time_offset_s;
+    }
+    if (!moves && !raised) break;
   }
   return found;
+}
+
+/// False if the recording does not contradict it.
+bool Surveyor::raise_noise(const calibration::RecordedWay& way, Settings& settings, Survey& found) {
+  console_.progress("noise of the IMU", 0);
+  const calibration::NoiseFit fit =
+      calibration::raised_noise(way, settings.imu.noise(), settings.calibrate.layout());
+  console_.clear_progress();
+  if (getenv("FDBG"))
+    fprintf(stderr, "NOISE gain %.1f tried %d arw %.3g vrw %.3g gb %.3g ab %.3g\n", fit.gain,
+            fit.tried, *settings.imu.with(fit.noise).arw_deg_sqrt_h,
+            *settings.imu.with(fit.noise).vrw_m_s_sqrt_h,
+            *settings.imu.with(fit.noise).gyro_bias_deg_h,
+            *settings.imu.with(fit.noise).accel_bias_mgal);
+  if (fit.gain == 0) return false;
+  found.noise = fit.noise;
+  settings.imu = settings.imu.with(fit.noise);
+  return true;
 }
 
 Settings Surveyor::complete(const std::string& log, const Settings& settings) {
@@ -95,6 +133,7 @@ Settings Surveyor::complete(const std::string& log, const Settings& settings) {
   auto found = seen_.find(log);
   if (found == seen_.end()) found = seen_.emplace(log, survey(log, settings)).first;
   completed.calibrate = settings.calibrate.resolved(found->second.carried);
+  if (found->second.noise) completed.imu = settings.imu.with(*found->second.noise);
   if (settings.calibrate.time_offset != "off") {
     completed.calibrate.time_offset_s = completed.rawlog.fix_delay_s = found->second.time_offset_s;
   }

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 
 #include "console.h"
+#include "foucault/calibration/recorded_way.h"
 #include "settings.h"
 
 namespace foucault::app {
@@ -12,6 +14,7 @@ namespace foucault::app {
 struct Survey {
   double time_offset_s = 0;  ///< calibrate.time_offset_s; what is left is small
   state::CalibrateOptions::Carried carried;
+  std::optional<imu::ImuNoise> noise;  ///< if the recording contradicts what was told
 };
 
 /// Looks through logs where the settings leave something to the recording (`auto`, the time
@@ -28,6 +31,7 @@ class Surveyor {
 
  private:
   Survey survey(const std::string& log, Settings settings);
+  bool raise_noise(const calibration::RecordedWay& way, Settings& settings, Survey& found);
 
   Console& console_;
   std::map<std::string, Survey> seen_;

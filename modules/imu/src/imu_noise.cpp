@@ -153,16 +153,24 @@ ImuOptions ImuOptions::completed_by(const ImuOptions& recorded) const {
   return out;
 }
 
-ImuOptions ImuOptions::scaled(double factor) const {
-  const ImuNoise n = noise();
+ImuOptions ImuOptions::with(const ImuNoise& noise) const {
   ImuOptions out = *this;
-  out.arw_deg_sqrt_h = factor * n.gyro_noise_density / kDegPerSqrtHour;
-  out.vrw_m_s_sqrt_h = factor * n.accel_noise_density / kMPerSPerSqrtHour;
-  out.gyro_bias_deg_h = factor * n.gyro_bias_sigma / kDegPerHour;
-  out.accel_bias_mgal = factor * n.accel_bias_sigma / kMilliGal;
-  out.gyro_turn_on_deg_h = factor * n.gyro_turn_on_sigma / kDegPerHour;
-  out.accel_turn_on_mgal = factor * n.accel_turn_on_sigma / kMilliGal;
+  out.arw_deg_sqrt_h = noise.gyro_noise_density / kDegPerSqrtHour;
+  out.vrw_m_s_sqrt_h = noise.accel_noise_density / kMPerSPerSqrtHour;
+  out.gyro_bias_deg_h = noise.gyro_bias_sigma / kDegPerHour;
+  out.accel_bias_mgal = noise.accel_bias_sigma / kMilliGal;
+  out.bias_tau_s = noise.bias_tau;
+  out.gyro_turn_on_deg_h = noise.gyro_turn_on_sigma / kDegPerHour;
+  out.accel_turn_on_mgal = noise.accel_turn_on_sigma / kMilliGal;
   return out;
+}
+
+ImuOptions ImuOptions::scaled(double factor) const {
+  ImuNoise n = noise();
+  for (double* value : {&n.gyro_noise_density, &n.accel_noise_density, &n.gyro_bias_sigma,
+                        &n.accel_bias_sigma, &n.gyro_turn_on_sigma, &n.accel_turn_on_sigma})
+    *value *= factor;
+  return with(n);
 }
 
 SampleKind ImuOptions::sample_kind() const {

@@ -14,6 +14,8 @@ void CalibrateOptions::fields(ConfigFields& f) {
          "what of one axis of the gyroscopes shows on another");
   f.text("accel_cross_axis", accel_cross_axis, {"auto", "on", "off"},
          "the same of the accelerometers");
+  f.text("imu_noise", imu_noise, {"auto", "on", "off"},
+         "noise of the IMU (imu.*), raised where the recording contradicts it");
   f.text("lever_arm", lever_arm, {"auto", "on", "off"},
          "IMU to antenna, what it was given wrong by");
   f.text("time_offset", time_offset, {"auto", "on", "off"},
@@ -58,8 +60,8 @@ CalibrateOptions CalibrateOptions::resolved(const Carried& carried) const {
   const auto resolve = [](std::string& choice, bool on) {
     if (choice == "auto") choice = on ? "on" : "off";
   };
-  for (std::string* always :
-       {&out.gyro_scale, &out.accel_scale, &out.lever_arm, &out.time_offset, &out.time_drift})
+  for (std::string* always : {&out.imu_noise, &out.gyro_scale, &out.accel_scale, &out.lever_arm,
+                              &out.time_offset, &out.time_drift})
     resolve(*always, true);
   for (std::string* rare : {&out.gyro_cross_axis, &out.accel_cross_axis}) resolve(*rare, false);
   for (std::string* rolling : {&out.mounting, &out.wheel_lever_arm})

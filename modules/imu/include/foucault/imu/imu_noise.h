@@ -59,6 +59,9 @@ class ImuOptions : public Configurable {
   /// a preset is chosen here. Nothing is as recorded then.
   ImuOptions completed_by(const ImuOptions& recorded) const;
 
+  /// The same with this noise.
+  ImuOptions with(const ImuNoise& noise) const;
+
   /// The same with every sigma and noise density `factor` times as large.
   ImuOptions scaled(double factor) const;
 };
