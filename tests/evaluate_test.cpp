@@ -102,6 +102,43 @@ TEST_F(Evaluate, WritesTablesNumbersAndReport) {
   }
 }
 
+TEST_F(Evaluate, TellsWhatPartsOfTheConfigurationAreWorth) {
+  const Outcome outcome =
+      evaluate("out", {"--ablate", "--methods", "ekf", "--set", "aids.nonholonomic=on", "--set",
+                       "aids.gnss_velocity=off", "--set", "aids.zero_velocity=off", "--set",
+                       "aids.wheel_speed=off", "--set", "calibrate.mounting=on"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const std::vector<std::string> parts{"", "nonholonomic", "aids", "calibration",
+                                       "aids and calibration"};
+  const json metrics = json::parse(folder_.text("out/metrics.json"));
+  ASSERT_EQ(metrics["ablation"].size(), parts.size());
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const json& row = metrics["ablation"][i];
+    EXPECT_EQ(row["without"], parts[i]);
+    EXPECT_EQ(row["horizontal_relative"].is_null(), i == 0);
+    const std::string label = i == 0 ? "ekf" : "ekf without " + parts[i];
+    EXPECT_EQ(metrics["methods"][label]["horizontal_rmse_m"], row["horizontal_rmse_m"]);
+    EXPECT_THAT(outcome.out, HasSubstr(label + " "));
+  }
+  const json& rows = metrics["ablation"];
+  EXPECT_NE(rows[1]["horizontal_rmse_m"], rows[0]["horizontal_rmse_m"]);
+  EXPECT_EQ(rows[1]["vertical_rmse_m"], rows[2]["vertical_rmse_m"]) << "there is no other aid";
+  EXPECT_NE(rows[3]["horizontal_rmse_m"], rows[0]["horizontal_rmse_m"]);
+  ASSERT_EQ(evaluate("bare", {"--methods", "ekf", "--no-report", "--set", "aids.mode=none", "--set",
+                              "calibrate.mode=none"})
+                .exit_code,
+            0);
+  EXPECT_EQ(json::parse(folder_.text("bare/metrics.json"))["methods"]["ekf"]["horizontal_rmse_m"],
+            rows[4]["horizontal_rmse_m"]);
+  EXPECT_EQ(Table(folder_ / "out/drift.csv").rows(), 2 * parts.size());
+
+  const std::string page = folder_.text("out/report/index.html");
+  EXPECT_THAT(page, HasSubstr("ekf without calibration"));
+  const json curves = json::parse(folder_.text("out/report/drift_growth_trip.json"));
+  EXPECT_EQ(curves["panels"][0]["series"].size(), 1u) << "figures are of the full one";
+  EXPECT_TRUE(fs::exists(folder_.path() / "out/tables/ablation.csv"));
+}
+
 TEST_F(Evaluate, NumbersDoNotDependOnJobs) {
   ASSERT_EQ(evaluate("one", {"--jobs", "1", "--no-report", "--quiet"}).exit_code, 0);
   ASSERT_EQ(evaluate("two", {"--jobs", "2", "--no-report"}).exit_code, 0);
@@ -116,6 +153,9 @@ TEST_F(Evaluate, WrongUsage) {
   expect_refused({"evaluate", log_, log_}, 2, HasSubstr("given twice"));
   expect_refused({"evaluate", log_, "--jobs", "0"}, 2, HasSubstr("--jobs"));
   expect_refused({"evaluate", log_, "--set", "outages.period_s=30"}, 2, HasSubstr("period_s"));
+  expect_refused(
+      {"evaluate", log_, "--ablate", "--set", "aids.mode=none", "--set", "calibrate.mode=none"}, 2,
+      HasSubstr("nothing can be switched off"));
   expect_refused({"tune", log_}, 2, HasSubstr("--config"));
 }
 

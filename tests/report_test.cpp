@@ -70,6 +70,33 @@ class Report : public testing::Test {
   TestFolder folder_;
 };
 
+TEST_F(Report, ShowsAidsAndCalibrationWhereThereAreAny) {
+  const auto titles = [&](const std::string& name) {
+    const json report = json::parse(folder_.text(name + "/report/report.json"));
+    std::set<std::string> titles;
+    for (const json& each : report["sections"]) titles.insert(each["title"]);
+    return titles;
+  };
+  run("trip.rawlog", "bare", {"--set", "aids.mode=none", "--set", "calibrate.mode=none"});
+  EXPECT_THAT(titles("bare"), Not(testing::Contains(testing::AnyOf("Aids", "Calibration"))));
+
+  const json metrics = run("trip.rawlog", "aided",
+                           {"--set", "aids.nonholonomic=on", "--set", "calibrate.mounting=on",
+                            "--set", "calibrate.lever_arm=on"});
+  const json aids = section("aided", "Aids");
+  const json& first = aids["tables"][0]["rows"][0];
+  EXPECT_EQ(first[0], "Nonholonomic");
+  EXPECT_EQ(first[1], std::to_string(int(metrics["aids"]["nonholonomic"]["used"])));
+  EXPECT_THAT(series("aided", "aid_innovations"), testing::Contains("used"));
+  const std::string untold = section("aided", "Calibration")["paragraphs"][0];
+  EXPECT_THAT(untold,
+              testing::AllOf(HasSubstr("Antenna, down"), Not(HasSubstr("Mounting, heading")),
+                             HasSubstr("the recording does not tell it")));
+  const Table arms(folder_ / "aided/report/calibration_arms.csv");
+  EXPECT_NEAR(arms.column("antenna_down_cm").back(),
+              100 * metrics["calibration"]["lever_arm"]["value"][2].get<double>(), 1e-3);
+}
+
 double mean_of(const json& squares) { return squares["mean"]; }
 
 TEST_F(Report, OfACleanTripIsCalmAndConsistent) {

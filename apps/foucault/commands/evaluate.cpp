@@ -25,6 +25,7 @@ struct EvaluateOptions {
   ConfigArguments config;
   int jobs = evaluation::processor_count();
   std::string out;
+  bool ablate = false;
   bool no_report = false;
   bool paper = false;
 };
@@ -43,14 +44,17 @@ void evaluate_logs(const EvaluateOptions& options, Call& call) {
   Settings settings = options.paper ? Settings::of_paper() : Settings();
   apply(options.config, settings);
   const std::vector<std::string>& methods = options.paper ? kPaperMethods : options.methods;
-  const std::vector<EvaluationCase> cases = cross(options.logs, methods, settings);
+  Ablation ablation{cross(options.logs, methods, settings), {}};
+  if (options.ablate) ablation = with_parts_off(ablation.cases);
   OutputDirectory directory(options.out);
-  Evaluation evaluation = evaluate_what_is_there(cases, options.jobs, call.console);
+  Evaluation evaluation = evaluate_what_is_there(ablation.cases, options.jobs, call.console);
   const evaluation::EvaluationSummary summary(std::move(evaluation.results));
-  write_evaluation(summary, labels(settings, call.command_line), !options.no_report,
-                   directory.staging(), call.console);
+  EvaluationLabels texts = labels(settings, call.command_line);
+  texts.ablation = ablation.names;
+  write_evaluation(summary, texts, !options.no_report, directory.staging(), call.console);
   directory.commit();
-  call.console.say(evaluation::evaluation_lines(summary));
+  call.console.say(options.ablate ? evaluation::ablation_lines(summary, ablation.names)
+                                  : evaluation::evaluation_lines(summary));
   call.console.say(written_lines(options.out, !options.no_report));
   std::vector<std::string> lacking = evaluation.damages;
   lacking.insert(lacking.end(), evaluation.failures.begin(), evaluation.failures.end());
@@ -73,6 +77,10 @@ std::function<void(Call&)> declare_evaluate(CLI::App& app) {
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
       ->capture_default_str();
+  app.add_flag(
+      "--ablate", o->ablate,
+      "Also with each aid switched off that is used, all aids, calibration, and both: what "
+      "each is worth");
   add_config_options(app, o->config, settings_help);
   add_jobs_option(app, o->jobs);
   app.add_option("--out", o->out, "Folder for drift.csv, metrics.json, tables/, report/")
@@ -82,6 +90,7 @@ std::function<void(Call&)> declare_evaluate(CLI::App& app) {
       "\nExamples:\n"
       "  foucault evaluate trip.rawlog --out trip-outages\n"
       "  foucault evaluate a.rawlog b.rawlog --config car.yaml --methods ekf,refined --out both\n"
+      "  foucault evaluate trip.rawlog --methods ekf --ablate --out trip-worth\n"
       "  foucault evaluate short.rawlog --set outages.first_s=85 --set outages.length_s=15 \\\n"
       "      --set outages.period_s=45 --set outages.shifts_s=[0] --out short\n"
       "Outages come from the keys outages.* of the configuration; by default 60 s every 150 s "

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -203,11 +204,40 @@ std::vector<evaluation::ExperimentRun> experiment_runs(const EvaluationCase& eva
 
 namespace {
 
+/// What can be switched off, and how.
+struct Part {
+  std::string name;
+  std::vector<std::string> assignments;
+};
+
+std::vector<Part> parts_of(const Settings& settings) {
+  const std::string no_aids = "aids.mode=none", no_calibration = "calibrate.mode=none";
+  const bool calibrates = settings.calibrate.resolved({true, true}).layout().slow_size() > 0;
+  std::vector<Part> parts;
+  for (const std::string& aid : settings.aids.in_use()) {
+    parts.push_back({aid, {fmt::format("aids.{}=off", aid)}});
+  }
+  const bool aided = !parts.empty();
+  if (aided) parts.push_back({"aids", {no_aids}});
+  if (calibrates) parts.push_back({"calibration", {no_calibration}});
+  if (aided && calibrates) parts.push_back({"aids and calibration", {no_aids, no_calibration}});
+  return parts;
+}
+
+EvaluationCase without(const Part& part, const EvaluationCase& whole) {
+  EvaluationCase c = whole;
+  c.label = evaluation::AblationCase{whole.method, part.name}.label();
+  for (const std::string& assignment : part.assignments) set_config(assignment, c.settings);
+  return c;
+}
+
 /// With what the logs say, once the settings are known to be right.
 std::vector<EvaluationCase> with_notes(std::vector<EvaluationCase> cases, Console& console) {
   for (const EvaluationCase& c : cases) experiment_runs(c);
-  Surveyor surveyor(console);  // a log is the same for all methods
+  // A log is the same for all methods; what it shows depends on the aids.
+  std::map<std::vector<std::string>, Surveyor> surveyors;
   for (EvaluationCase& c : cases) {
+    Surveyor& surveyor = surveyors.try_emplace(c.settings.aids.in_use(), console).first->second;
     c.settings = surveyor.complete(c.log, settings_for(c.log, c.settings));
     if (c.imu == imu::ImuOptions::kAsRecorded) c.imu = c.settings.imu.preset;
   }
@@ -215,6 +245,28 @@ std::vector<EvaluationCase> with_notes(std::vector<EvaluationCase> cases, Consol
 }
 
 }  // namespace
+
+Ablation with_parts_off(const std::vector<EvaluationCase>& cases) {
+  Ablation ablation;
+  const auto add = [&](const EvaluationCase& c, const std::string& part) {
+    ablation.cases.push_back(c);
+    const evaluation::AblationCase what{c.method, part};
+    const bool is_new =
+        std::none_of(ablation.names.begin(), ablation.names.end(),
+                     [&](const auto& name) { return name.label() == what.label(); });
+    if (is_new) ablation.names.push_back(what);
+  };
+  for (const EvaluationCase& c : cases) {
+    add(c, "");
+    for (const Part& part : parts_of(c.settings)) add(without(part, c), part.name);
+  }
+  if (ablation.cases.size() == cases.size()) {
+    throw UsageError(
+        "--ablate: nothing can be switched off; the configuration uses no aid and estimates "
+        "nothing beside the biases (sections aids and calibrate)");
+  }
+  return ablation;
+}
 
 void check_logs(const std::vector<std::string>& logs, const Settings& settings) {
   for (const std::string& log : logs) open_log(log, settings);
@@ -255,7 +307,8 @@ std::vector<evaluation::ExperimentResult> evaluate(const std::vector<EvaluationC
 
 void write_evaluation(const evaluation::EvaluationSummary& summary, const EvaluationLabels& labels,
                       bool with_report, const std::filesystem::path& folder, Console& console) {
-  exports::write_evaluation(summary, labels.origin, folder);
+  exports::write_evaluation(summary, labels.origin, folder,
+                            evaluation::ablation_rows(summary.overall(), labels.ablation));
   if (!with_report) return;
   console.progress("drawing", 0);
   page::write_report(content::evaluation_page(evaluation_report(summary, labels)),

@@ -27,6 +27,16 @@ std::vector<EvaluationCase> cross(const std::vector<std::string>& logs,
                                   const std::vector<std::string>& methods,
                                   const Settings& settings);
 
+/// Cases, and the names of their methods.
+struct Ablation {
+  std::vector<EvaluationCase> cases;
+  std::vector<evaluation::AblationCase> names;
+};
+
+/// Each case, and behind it the same with each aid off that it uses, with all aids off, without
+/// calibration, and without both. Throws UsageError if there is nothing to switch off.
+Ablation with_parts_off(const std::vector<EvaluationCase>& cases);
+
 /// The runs of a case, one a shift. Throws UsageError for settings that make no sense.
 std::vector<evaluation::ExperimentRun> experiment_runs(const EvaluationCase& evaluation_case);
 

@@ -78,31 +78,9 @@ content::RunLabels labels(const RunJob& job, const std::string& config) {
           job.command_line, config};
 }
 
-void turn_to_vehicle(const state::SlowBlock& arm, const state::Mounting& mounting,
-                     state::Epoch& epoch) {
-  const Eigen::Matrix3d R_v_b = mounting.q_v_b.toRotationMatrix();
-  epoch.slow.segment<3>(arm.index) = (R_v_b * epoch.slow.segment<3>(arm.index)).eval();
-  state::part(epoch.covariance, arm, arm) =
-      (R_v_b * state::part(epoch.covariance, arm, arm) * R_v_b.transpose()).eval();
-}
-
-/// As users know them: the whole offset, arms along forward, right, down.
-std::vector<evaluation::CalibratedBlock> calibration(const state::Epoch& epoch,
-                                                     const Settings& settings,
-                                                     const rawlog::RawlogSource& source) {
-  const state::Layout layout = settings.calibrate.layout();
-  state::Epoch whole = epoch;
-  if (const state::SlowBlock* offset = layout.find(state::block::time_offset)) {
-    whole.slow[offset->index] += settings.calibrate.time_offset_s;
-  }
-  if (const state::SlowBlock* arm = layout.find(state::block::lever_arm)) {
-    whole.slow.segment<3>(arm->index) += source.lever_arm();
-    turn_to_vehicle(*arm, source.mounting(), whole);
-  }
-  if (const state::SlowBlock* point = layout.find(state::block::wheel_lever_arm)) {
-    turn_to_vehicle(*point, source.mounting(), whole);
-  }
-  return evaluation::calibrated_blocks(whole, layout);
+state::Told told(const Settings& settings, const rawlog::RawlogSource& source) {
+  return {settings.calibrate.layout(), settings.calibrate.time_offset_s, source.lever_arm(),
+          source.mounting().q_v_b};
 }
 
 void write_report(const RunResult& result, content::RunReport& report,
@@ -126,8 +104,9 @@ RunResult run_into(const RunJob& job, const std::filesystem::path& folder, Conso
   const Method& method = find_method(job.method);
 
   rawlog::RawlogSource source(job.log, settings.imu.sample_kind(), settings.rawlog);
+  const state::Told known = told(settings, source);
   std::optional<content::RunReport> report;
-  if (job.report) report.emplace(labels(job, config), source.mounting());
+  if (job.report) report.emplace(labels(job, config), source.mounting(), known);
   RunOutput output(folder, source.mounting(), settings.output, method.keep_references_s,
                    report ? &*report : nullptr, console);
   const std::unique_ptr<state::Estimator> estimator =
@@ -146,7 +125,8 @@ RunResult run_into(const RunJob& job, const std::filesystem::path& folder, Conso
     if (result.damage) throw DataError(*result.damage);
     throw DataError(fmt::format("'{}': no epoch came out of the data", job.log));
   }
-  result.calibration = calibration(output.last_epoch(), settings, source);
+  result.calibration =
+      evaluation::calibrated_blocks(state::as_users_know(output.last_epoch(), known), known.layout);
   result.resources = meter.used();
   if (report) write_report(result, *report, folder, console);
   if (profile) result.profile = profile->times();

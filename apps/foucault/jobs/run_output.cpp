@@ -8,6 +8,7 @@
 #include "foucault/core/profile.h"
 #include "foucault/core/time.h"
 #include "foucault/core/units.h"
+#include "foucault/evaluation/statistics.h"
 
 namespace foucault::app {
 namespace {
@@ -78,6 +79,7 @@ void RunOutput::fix(const state::FixResult& fix) {
 }
 
 void RunOutput::observation(const state::ObservationResult& result) {
+  if (report_ != nullptr) report_->observation(result);
   if (metrics_) metrics_->observation(result);
 }
 
@@ -116,7 +118,12 @@ evaluation::RunMetrics RunOutput::finish() {
   solution_.finish();
   if (!metrics_) return {};
   const evaluation::RunMetrics metrics = metrics_->metrics();
-  if (report_ != nullptr) report_->consistency(metrics.consistency);
+  if (report_ == nullptr) return metrics;
+  report_->consistency(metrics.consistency);
+  for (const auto& [name, aid] : metrics.aids) {
+    report_->aid({name, aid.dimension, aid.used, aid.rejected, aid.mean_nis(),
+                  evaluation::mean_nees_band(aid.dimension, 1)});
+  }
   return metrics;
 }
 

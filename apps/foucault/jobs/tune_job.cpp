@@ -51,7 +51,7 @@ void check(const TuneJob& job) {
 tuning::SearchPlan plan(const TuneJob& job, Console& console) {
   const auto surveyor = std::make_shared<Surveyor>(console);
   const auto runs = [&job, surveyor](const std::string& log, const std::string& method,
-                           const tuning::GridPoint& point) {
+                                     const tuning::GridPoint& point) {
     const Settings settings = surveyor->complete(log, settings_for(log, job.at(point)));
     return experiment_runs({log, log, settings.imu.preset, method, "", settings});
   };

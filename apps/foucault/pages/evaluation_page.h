@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "foucault/content/evaluation_report.h"
+#include "foucault/evaluation/ablation.h"
 #include "foucault/evaluation/summary.h"
 #include "foucault/export/evaluation_files.h"
 
@@ -13,9 +14,12 @@ struct EvaluationLabels {
   std::string title = "Outage evaluation";
   std::vector<std::string> remarks;  ///< paragraphs at the top of the report
   exports::Provenance origin;
+  /// What the methods of the summary are cases of, if parts of the configuration were switched off.
+  std::vector<evaluation::AblationCase> ablation = {};
 };
 
-/// The report of an evaluation as plain data.
+/// The report of an evaluation as plain data. Of an ablation: a table of all cases, and all else of
+/// the methods with the configuration as it is.
 content::EvaluationReport evaluation_report(const evaluation::EvaluationSummary& summary,
                                             const EvaluationLabels& labels);
 

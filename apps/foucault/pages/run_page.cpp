@@ -1,7 +1,6 @@
 #include "pages/run_page.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <utility>
 
@@ -54,32 +53,6 @@ page::Table reference_table(const evaluation::ReferenceMetrics& r) {
   return table;
 }
 
-page::Table aids_table(const evaluation::Aids& aids) {
-  page::Table table;
-  table.title = "Other measurements";
-  table.note =
-      "Mean NIS: innovations squared by their covariance; as many as components if it is right.";
-  table.header = {"", "used", "rejected", "mean NIS"};
-  for (const auto& [name, aid] : aids) {
-    table.rows.push_back({name, fmt::format("{}", aid.used), fmt::format("{}", aid.rejected),
-                          fmt::format("{:.2f}", aid.mean_nis())});
-  }
-  return table;
-}
-
-page::Table calibration_table(const std::vector<evaluation::CalibratedBlock>& blocks) {
-  page::Table table;
-  table.title = "Calibration";
-  table.note = "At the last epoch, with 1 sigma.";
-  table.header = {"", "unit", "value", "sigma"};
-  for (const evaluation::CalibratedBlock& b : blocks) {
-    table.rows.push_back({std::string(b.block.name), std::string(b.block.unit),
-                          fmt::format("{:.4g}", fmt::join(b.value, ", ")),
-                          fmt::format("{:.2g}", fmt::join(b.sigma, ", "))});
-  }
-  return table;
-}
-
 }  // namespace
 
 page::Banner verdict_banner(const RunResult& result) {
@@ -118,8 +91,6 @@ std::vector<page::Table> metrics_tables(const RunResult& result) {
   std::vector<page::Table> tables;
   if (result.metrics.reference) tables.push_back(reference_table(*result.metrics.reference));
   if (result.metrics.gnss.samples > 0) tables.push_back(gnss_table(result.metrics.gnss));
-  if (!result.metrics.aids.empty()) tables.push_back(aids_table(result.metrics.aids));
-  if (!result.calibration.empty()) tables.push_back(calibration_table(result.calibration));
   return tables;
 }
 

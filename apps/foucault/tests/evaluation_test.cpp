@@ -187,6 +187,32 @@ TEST(Cross, NothingTwice) {
   EXPECT_THROW(cross({"a.rawlog"}, {"ekf", "ekf"}, Settings()), UsageError);
 }
 
+TEST(WithPartsOff, EachAidAllOfThemCalibrationAndBoth) {
+  Settings settings;
+  settings.aids.gnss_velocity = "off";
+  settings.aids.wheel_speed = "on";
+  settings.aids.zero_velocity = "auto";
+  settings.aids.nonholonomic = "off";
+  settings.calibrate.wheel_scale = "on";
+  const Ablation ablation =
+      with_parts_off(cross({"a.rawlog", "b.rawlog"}, {"ekf", "batch"}, settings));
+  ASSERT_EQ(ablation.cases.size(), 2u * 2 * 6);
+  ASSERT_EQ(ablation.names.size(), 2u * 6) << "logs share them";
+  EXPECT_EQ(ablation.names[1].label(), "ekf without zero_velocity");
+  EXPECT_EQ(ablation.cases[0].label, "");
+  EXPECT_EQ(ablation.cases[1].label, ablation.names[1].label());
+  EXPECT_THAT(ablation.cases[1].settings.aids.in_use(), ElementsAre("wheel_speed"));
+  EXPECT_THAT(ablation.cases[3].settings.aids.in_use(), testing::IsEmpty());
+  EXPECT_GT(ablation.cases[3].settings.calibrate.layout().slow_size(), 0);
+  const Settings& calibration_off = ablation.cases[4].settings;
+  EXPECT_EQ(calibration_off.calibrate.layout().slow_size(), 0);
+  EXPECT_EQ(calibration_off.aids.in_use().size(), 2u);
+  EXPECT_EQ(ablation.names[5].without, "aids and calibration");
+
+  settings.aids.mode = settings.calibrate.mode = "none";
+  EXPECT_THROW(with_parts_off(cross({"a.rawlog"}, {"ekf"}, settings)), UsageError);
+}
+
 TEST(ExperimentRuns, OneAShift) {
   EvaluationCase c{"a.rawlog", "a", "ADIS16465", "ekf", "tuned ekf", Settings()};
   const std::vector<evaluation::ExperimentRun> runs = experiment_runs(c);

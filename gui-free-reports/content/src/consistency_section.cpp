@@ -224,14 +224,6 @@ double low_value(std::vector<double> values, double share) {
   return *at;
 }
 
-double largest_finite(const std::vector<double>& values) {
-  double largest = 0;
-  for (const double value : values) {
-    if (std::isfinite(value)) largest = std::max(largest, value);
-  }
-  return largest;
-}
-
 /// A logarithmic axis that shows the bounds and nearly all values; those far out become arrowheads.
 Axis square_axis(const std::string& label, const std::vector<double>& values, double largest) {
   constexpr double kLowest = 0.03;  // 0.15 % of chi-square with 3 degrees lie below
@@ -240,19 +232,6 @@ Axis square_axis(const std::string& label, const std::vector<double>& values, do
   axis.min = std::min(kLowest, low_value(values, 0.01));
   axis.max = 1.5 * std::clamp(largest, 20.0, kHighest);
   return axis;
-}
-
-/// Both ends of the band, over the time of `x`.
-void add_bounds(const Band& band, const std::string& label, const std::vector<double>& x,
-                Panel& panel) {
-  if (x.empty()) return;
-  for (const auto& [at, name] : {std::pair{band.low, "2.5 %"}, std::pair{band.high, "97.5 %"}}) {
-    Series bound = line(label, Ink::gray, {x.front(), x.back()}, {at, at});
-    bound.column = panel.y.label + " " + name;
-    bound.dashed = true;
-    bound.size = 1.4;
-    panel.series.push_back(std::move(bound));
-  }
 }
 
 Series running_mean_band(const DecimatedTable::Rows& rows, const Band& band) {

@@ -10,6 +10,7 @@
 #include "foucault/core/time.h"
 #include "foucault/geodesy/wgs84.h"
 #include "foucault/state/vehicle_attitude.h"
+#include "foucault/state/vehicle_velocity.h"
 
 namespace foucault::content {
 
@@ -32,6 +33,14 @@ Eigen::Vector3d sigma_of(const Eigen::Matrix3d& covariance) {
 
 Eigen::Vector3d degrees(const so3::Euler& euler) {
   return kDegrees * Eigen::Vector3d(euler.roll, euler.pitch, euler.heading);
+}
+
+Eigen::VectorXd slow_values(const state::Epoch& epoch, const state::SlowBlock& slow) {
+  return epoch.slow.segment(slow.index, slow.block.size);
+}
+
+Eigen::VectorXd slow_sigmas(const state::Epoch& epoch, const state::SlowBlock& slow) {
+  return state::part(epoch.covariance.diagonal(), slow).cwiseMax(0).cwiseSqrt();
 }
 
 std::vector<double> six(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
@@ -157,8 +166,18 @@ Eigen::Vector3d StartPlane::north_east_up(const Geodetic& place) const {
           place.height - start_.height};
 }
 
-RunData::RunData(const state::Mounting& mounting, double statistics_from)
-    : mounting_(mounting), statistics_from_(statistics_from) {
+RunData::RunData(const state::Mounting& mounting, const state::Told& told, double statistics_from)
+    : mounting_(mounting), told_(told), statistics_from_(statistics_from) {
+  const state::Epoch prior = state::prior_as_users_know(told);
+  for (const state::SlowBlock& slow : told.layout.slow()) {
+    const auto columns = static_cast<size_t>(2 * slow.block.size);
+    blocks.push_back({slow,
+                      slow_values(prior, slow),
+                      slow_sigmas(prior, slow),
+                      {},
+                      {},
+                      DecimatedTable(columns)});
+  }
   for (Triad* triad : {&position_error, &velocity_error, &attitude_error, &innovation, &postfit}) {
     triad->statistics_from = statistics_from;
   }
@@ -176,10 +195,11 @@ Eigen::Vector3d RunData::place(const Geodetic& geodetic) {
 
 void RunData::mark_gap() {
   track.add_gap();
-  for (Triad* triad : {&position, &velocity, &attitude, &gyro_bias, &accel_bias, &position_error,
-                       &velocity_error, &attitude_error}) {
+  for (Triad* triad : {&position, &velocity, &attitude, &vehicle_velocity, &gyro_bias, &accel_bias,
+                       &position_error, &velocity_error, &attitude_error}) {
     triad->rows.add_gap();
   }
+  for (BlockHistory& block : blocks) block.rows.add_gap();
   for (DecimatedTable* nees : {&position_nees, &velocity_nees, &attitude_nees}) nees->add_gap();
 }
 
@@ -197,11 +217,32 @@ void RunData::add(const state::Epoch& epoch) {
   accel_bias.add(t, kMilligal * epoch.bias.accel,
                  kMilligal * epoch.sigma_of(state::block::accel_bias));
 
+  const state::VehicleVelocity along = state::vehicle_velocity(epoch, told_);
+  vehicle_velocity.add(t, along.velocity_v, sigma_of(along.covariance_v));
+  if (!blocks.empty()) add_blocks(t, state::as_users_know(epoch, told_));
+
   const state::VehicleAttitude vehicle = state::vehicle_attitude(epoch, mounting_);
   so3::Euler euler = vehicle.euler;
   if (last_heading_) euler.heading = *last_heading_ + so3::wrap(euler.heading - *last_heading_);
   last_heading_ = euler.heading;
   attitude.add(t, degrees(euler), kDegrees * vehicle.sigma);
+}
+
+void RunData::add_blocks(double t, const state::Epoch& epoch) {
+  for (BlockHistory& block : blocks) {
+    block.last = slow_values(epoch, block.slow);
+    block.last_sigma = slow_sigmas(epoch, block.slow);
+    std::vector<double> row(block.last.begin(), block.last.end());
+    row.insert(row.end(), block.last_sigma.begin(), block.last_sigma.end());
+    block.rows.add(t, row);
+  }
+}
+
+void RunData::add(const state::ObservationResult& result) {
+  auto found = aids.find(result.name);
+  if (found == aids.end()) found = aids.try_emplace(std::string(result.name)).first;
+  DecimatedTable& table = result.used ? found->second.used : found->second.rejected;
+  table.add(seconds(result.t_ns), {result.normalized_square / result.dimension});
 }
 
 void RunData::add(const state::FixResult& fix) {

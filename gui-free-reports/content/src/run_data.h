@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -12,6 +13,7 @@
 #include "foucault/plot/decimation.h"
 #include "foucault/state/interfaces.h"
 #include "foucault/state/result.h"
+#include "foucault/state/told_blocks.h"
 
 /// What a run report keeps of a run, in bounded memory. Times in seconds since the first stamp.
 namespace foucault::content {
@@ -39,6 +41,20 @@ struct Triad {
 
   void add(double t, const Eigen::Vector3d& value, const Eigen::Vector3d& sigma);
   bool empty() const { return rows.empty(); }
+};
+
+/// A slow block over time, as users know it, in SI units: a column a row, then their sigmas.
+struct BlockHistory {
+  state::SlowBlock slow;
+  Eigen::VectorXd prior, prior_sigma;
+  Eigen::VectorXd last, last_sigma;
+  plot::DecimatedTable rows;
+};
+
+/// Normalized squares of one kind of measurement over their dimension.
+struct SquareHistory {
+  plot::DecimatedTable used{1};
+  plot::DecimatedTable rejected{1};
 };
 
 struct Interval {
@@ -125,12 +141,13 @@ class StartPlane {
 class RunData {
  public:
   /// Statistics are over what comes from `statistics_from` [s] on.
-  RunData(const state::Mounting& mounting, double statistics_from);
+  RunData(const state::Mounting& mounting, const state::Told& told, double statistics_from);
 
   double statistics_from() const { return statistics_from_; }
 
   void add(const state::Epoch& epoch);
   void add(const state::FixResult& fix);
+  void add(const state::ObservationResult& result);
   void add(const state::Notice& notice);
   void add(const state::Epoch& epoch, const state::ReferenceError& error);
   void add(const NormalizedSquare& square);
@@ -145,6 +162,7 @@ class RunData {
   plot::DecimatedTable rejected_places{2};  ///< north, east
   Triad position;                           ///< north, east, up of the start [m]
   Triad velocity;                           ///< north, east, down [m/s]
+  Triad vehicle_velocity;                   ///< forward, right, down [m/s]
   Triad attitude;                           ///< roll, pitch, heading (continuous) [deg]
   Triad gyro_bias;                          ///< x, y, z of b [deg/h]
   Triad accel_bias;                         ///< x, y, z of b [mGal]
@@ -154,8 +172,10 @@ class RunData {
   Triad innovation;                         ///< used fixes, north, east, down [m]
   Triad rejected_innovation;                ///< as innovation
   Triad postfit;                            ///< used fixes; sigma not known
-  plot::DecimatedTable fix_types{2};        ///< quality, rejected (0 or 1)
-  plot::DecimatedTable nis{2};              ///< used fixes: NIS, running mean
+  std::vector<BlockHistory> blocks;
+  std::map<std::string, SquareHistory, std::less<>> aids;
+  plot::DecimatedTable fix_types{2};  ///< quality, rejected (0 or 1)
+  plot::DecimatedTable nis{2};        ///< used fixes: NIS, running mean
   plot::DecimatedTable rejected_nis{1};
   plot::DecimatedTable position_nees{1};
   plot::DecimatedTable velocity_nees{1};
@@ -182,9 +202,11 @@ class RunData {
   double seconds(int64_t t_ns);
   Eigen::Vector3d place(const Geodetic& geodetic);
   void mark_gap();
+  void add_blocks(double t, const state::Epoch& epoch);
   void watch_verdict(double t, state::FixVerdict verdict);
 
   state::Mounting mounting_;
+  state::Told told_;
   double statistics_from_;
   std::vector<Stretch> outages_;
   std::optional<int64_t> start_ns_;

@@ -24,19 +24,6 @@ constexpr Names kEuler{"Roll", "Pitch", "Heading"};
 constexpr Names kXyz{"x axis", "y axis", "z axis"};
 constexpr std::array<Ink, 3> kAxisInks{Ink::blue, Ink::vermillion, Ink::green};
 
-/// centre +- 3 sigma.
-Series bounds(const std::vector<double>& x, const std::vector<double>& centre,
-              const std::vector<double>& sigma, const std::string& column) {
-  Series series = pale_band("±3σ", column);
-  series.range_role = RangeRole::typical;
-  series.x = x;
-  for (size_t i = 0; i < x.size(); ++i) {
-    series.lower.push_back(centre[i] - 3 * sigma[i]);
-    series.upper.push_back(centre[i] + 3 * sigma[i]);
-  }
-  return series;
-}
-
 double largest_shown(const Figure& figure) {
   double largest = 0;
   for (const Panel& panel : figure.panels) {
@@ -118,6 +105,20 @@ constexpr std::array<TriadFigure, 3> kSolution{{
      "heading is drawn without jumps at 360°. Heading is learnt while "
      "the vehicle accelerates and turns, so its bounds narrow then.",
      "angle", "°", kEuler, 0.5},
+}};
+
+constexpr std::array<TriadFigure, 1> kAids{{
+    {&RunData::vehicle_velocity,
+     "vehicle_velocity",
+     "Velocity along the vehicle's axes",
+     "Velocity of the IMU along forward, right and down of the vehicle, with the mounting that was "
+     "estimated where it is, and 3-sigma bounds. Wheels that do not slip leave little to the right "
+     "and down, but for turns, in which an IMU ahead of the rear axle moves sideways, and for "
+     "springs.",
+     "velocity",
+     "m/s",
+     {"Forward", "Right", "Down"},
+     0.1},
 }};
 
 constexpr std::array<TriadFigure, 3> kErrors{{
@@ -323,6 +324,10 @@ std::vector<Figure> solution_figures(const RunData& data, const std::string& sub
   std::vector<Figure> figures = triad_figures(data, kSolution, subtitle);
   if (!data.position.empty()) figures.push_back(uncertainty_figure(data, subtitle));
   return figures;
+}
+
+std::vector<Figure> vehicle_figures(const RunData& data, const std::string& subtitle) {
+  return triad_figures(data, kAids, subtitle);
 }
 
 std::vector<Figure> error_figures(const RunData& data, const std::string& subtitle) {

@@ -13,6 +13,8 @@ namespace foucault::content {
 std::optional<plot::Figure> ground_track(const RunData& data, const std::string& subtitle);
 /// Position, velocity, attitude, and how sure the estimator is of them.
 std::vector<plot::Figure> solution_figures(const RunData& data, const std::string& subtitle);
+/// Velocity along the axes of the vehicle.
+std::vector<plot::Figure> vehicle_figures(const RunData& data, const std::string& subtitle);
 /// Position, velocity and attitude less those of the reference.
 std::vector<plot::Figure> error_figures(const RunData& data, const std::string& subtitle);
 std::vector<plot::Figure> bias_figures(const RunData& data, const std::string& subtitle);

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 #include "foucault/plot/text.h"
 
@@ -56,6 +58,39 @@ Figure stacked_figure(const std::string& name, const std::string& title,
 std::string since(double statistics_from) {
   if (statistics_from <= 0) return {};
   return fmt::format(", from {} s on", significant_text(statistics_from));
+}
+
+Series bounds(const std::vector<double>& x, const std::vector<double>& centre,
+              const std::vector<double>& sigma, const std::string& column) {
+  Series series = pale_band("±3σ", column);
+  series.range_role = RangeRole::typical;
+  series.x = x;
+  for (size_t i = 0; i < x.size(); ++i) {
+    series.lower.push_back(centre[i] - 3 * sigma[i]);
+    series.upper.push_back(centre[i] + 3 * sigma[i]);
+  }
+  return series;
+}
+
+double largest_finite(const std::vector<double>& values) {
+  double largest = 0;
+  for (const double value : values) {
+    if (std::isfinite(value)) largest = std::max(largest, value);
+  }
+  return largest;
+}
+
+void add_bounds(const Band& band, const std::string& label, const std::vector<double>& x,
+                Panel& panel) {
+  if (x.empty()) return;
+  const std::string& of = panel.title.empty() ? panel.y.label : panel.title;
+  for (const auto& [at, name] : {std::pair{band.low, "2.5 %"}, std::pair{band.high, "97.5 %"}}) {
+    Series bound = line(label, Ink::gray, {x.front(), x.back()}, {at, at});
+    bound.column = of + " " + name;
+    bound.dashed = true;
+    bound.size = 1.4;
+    panel.series.push_back(std::move(bound));
+  }
 }
 
 }  // namespace foucault::content

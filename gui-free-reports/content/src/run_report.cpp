@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "aids_section.h"
+#include "calibration_section.h"
 #include "consistency_section.h"
 #include "foucault/core/fix_quality.h"
 #include "foucault/core/time.h"
@@ -69,8 +71,8 @@ bool has_content(const Section& section) {
 
 class RunReport::Collector {
  public:
-  Collector(RunLabels run_labels, const state::Mounting& mounting)
-      : labels(std::move(run_labels)), data(mounting, labels.statistics_from_s) {}
+  Collector(RunLabels run_labels, const state::Mounting& mounting, const state::Told& told)
+      : labels(std::move(run_labels)), data(mounting, told, labels.statistics_from_s) {}
 
   std::string subtitle() const {
     return joined({labels.recording, labels.method,
@@ -109,7 +111,8 @@ class RunReport::Collector {
     for (const Section& section :
          {overview(), timeline_section(data, subtitle()),
           Section{"Errors", {}, {}, error_figures(data, subtitle())},
-          consistency_section(data, subtitle()), gnss(),
+          consistency_section(data, subtitle()), gnss(), aids_section(data, aids, subtitle()),
+          calibration_section(data, subtitle()),
           Section{"Solution", {}, {}, solution_figures(data, subtitle())},
           Section{"Sensor biases", {}, {}, bias_figures(data, subtitle())}, health()}) {
       if (has_content(section)) page.sections.push_back(section);
@@ -125,16 +128,21 @@ class RunReport::Collector {
   std::optional<Banner> banner;
   std::vector<KeyNumber> key_numbers;
   std::vector<Table> tables;
+  std::vector<AidSummary> aids;
 };
 
-RunReport::RunReport(RunLabels labels, const state::Mounting& mounting)
-    : collector_(std::make_unique<Collector>(std::move(labels), mounting)) {}
+RunReport::RunReport(RunLabels labels, const state::Mounting& mounting, const state::Told& told)
+    : collector_(std::make_unique<Collector>(std::move(labels), mounting, told)) {}
 
 RunReport::~RunReport() = default;
 
 void RunReport::epoch(const state::Epoch& epoch) { collector_->data.add(epoch); }
 
 void RunReport::fix(const state::FixResult& fix) { collector_->data.add(fix); }
+
+void RunReport::observation(const state::ObservationResult& result) {
+  collector_->data.add(result);
+}
 
 void RunReport::notice(const state::Notice& notice) { collector_->data.add(notice); }
 
@@ -147,6 +155,8 @@ void RunReport::normalized_square(const NormalizedSquare& square) { collector_->
 void RunReport::consistency(const Consistency& consistency) {
   collector_->data.consistency = consistency;
 }
+
+void RunReport::aid(const AidSummary& aid) { collector_->aids.push_back(aid); }
 
 void RunReport::imu_stamp(int64_t t_ns) { collector_->data.add_imu_stamp(t_ns); }
 

@@ -97,7 +97,7 @@ TEST(StartPlane, IsMetricAlongTheEllipsoid) {
 }
 
 TEST(RunData, OutagesAreRelativeToTheFirstStamp) {
-  RunData data(state::Mounting{}, 0);
+  RunData data(state::Mounting{}, {}, 0);
   data.add_outage(nanoseconds(105), nanoseconds(165));
   EXPECT_TRUE(data.outages().empty()) << "no start yet";
   data.add_imu_stamp(nanoseconds(100));
@@ -107,7 +107,7 @@ TEST(RunData, OutagesAreRelativeToTheFirstStamp) {
 }
 
 TEST(RunData, SquaresGoWhereTheyBelong) {
-  RunData data(state::Mounting{}, 0);
+  RunData data(state::Mounting{}, {}, 0);
   for (const NormalizedKind kind : {NormalizedKind::innovation, NormalizedKind::position,
                                     NormalizedKind::velocity, NormalizedKind::attitude}) {
     NormalizedSquare square;
@@ -128,7 +128,7 @@ TEST(RunData, SquaresGoWhereTheyBelong) {
 }
 
 TEST(RunData, CountsFixesByQualityAndVerdict) {
-  RunData data(state::Mounting{}, 0);
+  RunData data(state::Mounting{}, {}, 0);
   state::FixResult fix;
   fix.quality = FixQuality::ppp;
   data.add(fix);
@@ -143,7 +143,7 @@ TEST(RunData, CountsFixesByQualityAndVerdict) {
 }
 
 TEST(RunData, KeepsTheFirstNoticesAndCountsAll) {
-  RunData data(state::Mounting{}, 0);
+  RunData data(state::Mounting{}, {}, 0);
   for (int i = 0; i < 300; ++i) data.add(state::Notice{i, state::NoticeKind::skipped, ""});
   EXPECT_EQ(data.notices.size(), 200U);
   EXPECT_EQ(data.notices_seen, 300U);

@@ -194,7 +194,26 @@ Json runs_json(const std::vector<evaluation::ExperimentResult>& results) {
   return json;
 }
 
-std::string metrics_text(const evaluation::EvaluationSummary& summary, const Provenance& origin) {
+Json relative_json(const std::optional<evaluation::Estimate>& relative) {
+  return relative ? estimate_json(*relative) : Json();
+}
+
+Json ablation_json(const std::vector<evaluation::AblationRow>& rows) {
+  Json json = Json::array();
+  for (const evaluation::AblationRow& row : rows) {
+    json.push_back(Object()
+                       .with("method", row.what.method)
+                       .with("without", row.what.without)
+                       .with("horizontal_rmse_m", row.horizontal_rms_m)
+                       .with("vertical_rmse_m", row.vertical_rms_m)
+                       .with("horizontal_relative", relative_json(row.horizontal_relative))
+                       .with("vertical_relative", relative_json(row.vertical_relative)));
+  }
+  return json;
+}
+
+std::string metrics_text(const evaluation::EvaluationSummary& summary, const Provenance& origin,
+                         const std::vector<evaluation::AblationRow>& ablation) {
   Json json;
   json["methods"] = methods_json(summary.overall(), summary.overall().front().group);
   Json rows = Json::object();
@@ -203,6 +222,7 @@ std::string metrics_text(const evaluation::EvaluationSummary& summary, const Pro
   }
   json[summary.row_header() == "IMU" ? "imus" : "recordings"] = rows;
   json["comparisons"] = comparisons_json(summary.rows());
+  if (!ablation.empty()) json["ablation"] = ablation_json(ablation);
   json["distances"] = distances_json(summary.distances());
   json["normalized_drift"] = normalized_json(summary.normalized());
   json["after_return"] = returns_json(summary.returns());
@@ -223,11 +243,12 @@ void write_table(const evaluation::TextTable& table, const std::filesystem::path
 }  // namespace
 
 void write_evaluation(const evaluation::EvaluationSummary& summary, const Provenance& origin,
-                      const std::filesystem::path& folder) {
+                      const std::filesystem::path& folder,
+                      const std::vector<evaluation::AblationRow>& ablation) {
   const evaluation::TextTable drifts = evaluation::drift_record_table(
       evaluation::drift_records(summary.results()), evaluation::default_drift_marks_s());
   write_text_file(folder / "drift.csv", evaluation::to_csv(drifts));
-  write_text_file(folder / "metrics.json", metrics_text(summary, origin));
+  write_text_file(folder / "metrics.json", metrics_text(summary, origin, ablation));
   if (!origin.config.empty()) write_text_file(folder / "config.yaml", origin.config);
   std::filesystem::create_directories(folder / "tables");
   write_table(summary.rms_table(), folder / "tables", "table_iii");
@@ -235,6 +256,9 @@ void write_evaluation(const evaluation::EvaluationSummary& summary, const Proven
   write_table(summary.statistics_table(), folder / "tables", "statistics");
   write_table(summary.normalized_table(), folder / "tables", "normalized_drift");
   write_table(summary.return_table(), folder / "tables", "after_return");
+  if (!ablation.empty()) {
+    write_table(evaluation::ablation_table(ablation), folder / "tables", "ablation");
+  }
   if (summary.distances().empty()) return;
   write_table(evaluation::distance_table(summary.distances(), summary.row_header()),
               folder / "tables", "distance");

@@ -31,4 +31,13 @@ void AidOptions::apply_to(GnssFix& fix) const {
     fix.velocity_covariance = std::pow(*gnss_velocity_sigma_m_s, 2) * Eigen::Matrix3d::Identity();
 }
 
+std::vector<std::string> AidOptions::in_use() const {
+  std::vector<std::string> keys;
+  if (uses_gnss_velocity()) keys.push_back("gnss_velocity");
+  if (uses(zero_velocity)) keys.push_back("zero_velocity");
+  if (uses(nonholonomic)) keys.push_back("nonholonomic");
+  if (uses(wheel_speed)) keys.push_back("wheel_speed");
+  return keys;
+}
+
 }  // namespace foucault::measurement

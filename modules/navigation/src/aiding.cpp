@@ -144,7 +144,8 @@ std::optional<Eigen::Vector2d> Aiding::slip_sigma() const {
   if (aids.nonholonomic != "on" && (!found || found->white.minCoeff() > kMostSlip))
     return std::nullopt;
   if (aids.nonholonomic_sigma_m_s) return Eigen::Vector2d::Constant(*aids.nonholonomic_sigma_m_s);
-  return found ? found->white : Eigen::Vector2d::Constant(kUsualSlip);
+  if (!found) return Eigen::Vector2d::Constant(kUsualSlip);
+  return found->white;
 }
 
 std::optional<double> Aiding::wheel_sigma() const {

@@ -8,6 +8,7 @@
 #include "foucault/page/report_page.h"
 #include "foucault/state/interfaces.h"
 #include "foucault/state/result.h"
+#include "foucault/state/told_blocks.h"
 
 namespace foucault::content {
 
@@ -23,17 +24,28 @@ struct RunLabels {
   double statistics_from_s = 0;
 };
 
+/// What the innovations of one kind of measurement beside positions amount to.
+struct AidSummary {
+  std::string name;  ///< of the kind, as in metrics.json
+  int dimension = 0;
+  int64_t used = 0, rejected = 0;
+  double mean_nis = 0;  ///< of the used ones; as many as dimensions if their covariances are right
+  Band single_band;     ///< holds a normalized square with 95 % if they are
+};
+
 /// Collects a run in bounded memory and writes its report: ground track, timeline of faults,
-/// errors where there is a reference, consistency, GNSS innovations, position, velocity, attitude,
-/// uncertainty, biases, data health.
+/// errors where there is a reference, consistency, GNSS innovations, aids and calibration where
+/// there are any, position, velocity, attitude, uncertainty, biases, data health.
 /// Calls come in order of stamps within each kind; kinds may interleave in any way.
 class RunReport : public state::Sink {
  public:
-  RunReport(RunLabels labels, const state::Mounting& mounting);
+  /// `told`: of the blocks that are estimated.
+  RunReport(RunLabels labels, const state::Mounting& mounting, const state::Told& told = {});
   ~RunReport() override;
 
   void epoch(const state::Epoch& epoch) override;
   void fix(const state::FixResult& fix) override;
+  void observation(const state::ObservationResult& result) override;
   void notice(const state::Notice& notice) override;
   /// `epoch` is the one the error belongs to; its covariance gives the bounds.
   void reference_error(const state::Epoch& epoch, const state::ReferenceError& error);
@@ -43,6 +55,9 @@ class RunReport : public state::Sink {
 
   /// What the normalized squares and innovations of the whole run amount to.
   void consistency(const Consistency& consistency);
+
+  /// The kinds of observations that are shown, in this order.
+  void aid(const AidSummary& aid);
 
   /// End of an IMU sample's interval, for the sampling statistics.
   void imu_stamp(int64_t t_ns);

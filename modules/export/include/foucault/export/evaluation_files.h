@@ -2,7 +2,9 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
+#include "foucault/evaluation/ablation.h"
 #include "foucault/evaluation/summary.h"
 
 namespace foucault::exports {
@@ -16,8 +18,9 @@ struct Provenance {
 
 /// drift.csv, metrics.json, config.yaml and tables/table_iii, table_iv, statistics,
 /// normalized_drift, after_return (.csv, .md); for recordings that go far, also tables/distance and
-/// distance_difference.
+/// distance_difference; if parts of the configuration were switched off, tables/ablation.
 void write_evaluation(const evaluation::EvaluationSummary& summary, const Provenance& origin,
-                      const std::filesystem::path& folder);
+                      const std::filesystem::path& folder,
+                      const std::vector<evaluation::AblationRow>& ablation = {});
 
 }  // namespace foucault::exports

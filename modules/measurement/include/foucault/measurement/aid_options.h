@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "foucault/core/config.h"
 #include "foucault/core/measurement.h"
@@ -26,6 +27,8 @@ class AidOptions : public Configurable {
   void apply_to(GnssFix& fix) const;
   bool uses_gnss_velocity() const { return mode != "none" && gnss_velocity == "on"; }
   bool uses(const std::string& aid) const { return mode != "none" && aid != "off"; }
+  /// The keys of the aids that are used, where the data carry them.
+  std::vector<std::string> in_use() const;
 };
 
 }  // namespace foucault::measurement

@@ -1,0 +1,48 @@
+#include "foucault/evaluation/ablation.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace foucault::evaluation {
+namespace {
+
+using testing::ElementsAre;
+
+/// Drifts of three outages, each with half of it downward.
+MethodOutages outages(const std::string& method, std::vector<OutageDrift>& drifts, double scale) {
+  MethodOutages outages{"trip", method, {}};
+  for (int i = 0; i < 3; ++i) drifts[i].maximum = {scale * (i + 1), scale * (i + 1) / 2};
+  for (const OutageDrift& drift : drifts) outages.entries.push_back({nullptr, &drift});
+  return outages;
+}
+
+class AblationTest : public testing::Test {
+ protected:
+  std::vector<OutageDrift> whole_{3}, halved_{3};
+  std::vector<MethodOutages> outages_{outages("ekf", whole_, 1),
+                                      outages("ekf without wheel_speed", halved_, 2)};
+};
+
+TEST_F(AblationTest, DifferencesAreFromTheSameMethodAsItIs) {
+  const std::vector<AblationRow> rows =
+      ablation_rows(outages_, {{"ekf", ""}, {"ekf", "wheel_speed"}, {"ekf", "aids"}});
+  ASSERT_EQ(rows.size(), 2u) << "one has no outages";
+  EXPECT_DOUBLE_EQ(rows[1].horizontal_rms_m, 2 * rows[0].horizontal_rms_m);
+  EXPECT_FALSE(rows[0].horizontal_relative);
+  EXPECT_DOUBLE_EQ(rows[1].vertical_relative->value, 1);
+  const TextTable table = ablation_table(rows);
+  EXPECT_THAT(table.rows[0], ElementsAre("ekf", "2.160", "1.080", "", "", ""));
+  EXPECT_THAT(table.rows[1], ElementsAre("ekf without wheel_speed", "4.320", "2.160", "+100.0",
+                                         "[+100.0, +100.0]", "+100.0"));
+}
+
+TEST_F(AblationTest, NoDifferenceFromAMethodThatFailed) {
+  outages_.erase(outages_.begin());
+  const std::vector<AblationRow> rows =
+      ablation_rows(outages_, {{"ekf", ""}, {"ekf", "wheel_speed"}});
+  ASSERT_EQ(rows.size(), 1u);
+  EXPECT_FALSE(rows[0].horizontal_relative);
+}
+
+}  // namespace
+}  // namespace foucault::evaluation

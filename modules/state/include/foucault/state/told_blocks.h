@@ -1,0 +1,25 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include "foucault/state/epoch.h"
+
+namespace foucault::state {
+
+/// What was told before a run of that which it estimates, and in which axes users think of it.
+struct Told {
+  Layout layout;
+  double time_offset_s = 0;
+  Eigen::Vector3d lever_arm_b = Eigen::Vector3d::Zero();      ///< IMU to antenna [m]
+  Eigen::Quaterniond q_v_b = Eigen::Quaterniond::Identity();  ///< the mounting as told
+};
+
+/// The epoch with slow blocks as users know them: the whole time offset; lever arms along the told
+/// forward, right, down, that to the antenna as a whole. Its covariance follows.
+Epoch as_users_know(const Epoch& epoch, const Told& told);
+
+/// The same of what was known before anything was measured.
+Epoch prior_as_users_know(const Told& told);
+
+}  // namespace foucault::state
