@@ -1,5 +1,7 @@
 #include "jobs/survey.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <optional>
 
@@ -96,7 +98,7 @@ Survey Surveyor::survey(const std::string& log, Settings settings) {
     const bool moves = rest && std::abs(found.time_offset_s + *rest) < kMost;
     const bool asks = settings.calibrate.imu_noise == "on" && !asked && (pass > 0 || !moves);
     asked |= asks;
-    const bool raised = asks && raise_noise(*watcher->way.way(), settings, found);
+    const bool raised = asks && raise_noise(log, *watcher->way.way(), settings, found);
     if (moves) {
       found.time_offset_s += *rest;
       settings.calibrate.time_offset_s = settings.rawlog.fix_delay_s = found.time_offset_s;
@@ -107,7 +109,8 @@ Survey Surveyor::survey(const std::string& log, Settings settings) {
 }
 
 /// False if the recording does not contradict it.
-bool Surveyor::raise_noise(const calibration::RecordedWay& way, Settings& settings, Survey& found) {
+bool Surveyor::raise_noise(const std::string& log, const calibration::RecordedWay& way,
+                           Settings& settings, Survey& found) {
   console_.progress("noise of the IMU", 0);
   const calibration::NoiseFit fit =
       calibration::raised_noise(way, settings.imu.noise(), settings.calibrate.layout());
@@ -115,6 +118,12 @@ bool Surveyor::raise_noise(const calibration::RecordedWay& way, Settings& settin
   if (fit.gain == 0) return false;
   found.noise = fit.noise;
   settings.imu = settings.imu.with(fit.noise);
+  console_.warn(fmt::format(
+      "{}: the recording shows more noise of the IMU than was told, which is taken: "
+      "imu.arw_deg_sqrt_h {:.3g}, vrw_m_s_sqrt_h {:.3g}, gyro_bias_deg_h {:.3g}, accel_bias_mgal "
+      "{:.3g} (calibrate.imu_noise=off: as told)",
+      log, *settings.imu.arw_deg_sqrt_h, *settings.imu.vrw_m_s_sqrt_h,
+      *settings.imu.gyro_bias_deg_h, *settings.imu.accel_bias_mgal));
   return true;
 }
 

@@ -31,7 +31,8 @@ class Surveyor {
 
  private:
   Survey survey(const std::string& log, Settings settings);
-  bool raise_noise(const calibration::RecordedWay& way, Settings& settings, Survey& found);
+  bool raise_noise(const std::string& log, const calibration::RecordedWay& way, Settings& settings,
+                   Survey& found);
 
   Console& console_;
   std::map<std::string, Survey> seen_;

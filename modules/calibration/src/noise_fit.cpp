@@ -20,9 +20,11 @@ constexpr double kLargest = 1e4;  // factor
 /// Half a second: the noise of a second is wanted, not the course of the covariance within it.
 constexpr double kCovarianceStep = 0.5;
 
+/// White noise of accelerometers and gyroscopes, then their variations.
 using Factors = std::array<double, 4>;
+constexpr std::size_t kWhite = 2;
 
-imu::ImuNoise times(imu::ImuNoise noise, const Factors& factors) {
+imu::ImuNoise raised(imu::ImuNoise noise, const Factors& factors) {
   noise.accel_noise_density *= factors[0];
   noise.gyro_noise_density *= factors[1];
   noise.accel_bias_sigma *= factors[2];
@@ -30,6 +32,13 @@ imu::ImuNoise times(imu::ImuNoise noise, const Factors& factors) {
   noise.accel_turn_on_sigma = std::max(noise.accel_turn_on_sigma, noise.accel_bias_sigma);
   noise.gyro_turn_on_sigma = std::max(noise.gyro_turn_on_sigma, noise.gyro_bias_sigma);
   return noise;
+}
+
+double log_prior(const Factors& factors) {
+  constexpr double kUsual = 1.386;  // log(4)
+  double sum = 0;
+  for (const double factor : factors) sum -= 0.5 * std::pow(std::log(factor) / kUsual, 2);
+  return sum;
 }
 
 double log_density(const state::Innovation& z) {
@@ -47,30 +56,61 @@ class Search {
   }
 
   void raise() {
-    constexpr int kRounds = 2;
-    for (int round = 0; round < kRounds; ++round) {
-      for (std::size_t i = 0; i < factors_.size(); ++i) {
-        while (factors_[i] < kLargest && better(i, kCoarse)) {
-        }
-        if (factors_[i] > 1 && !better(i, 0.5)) better(i, 2);
-      }
+    while (steepest(kWhite)) {
+    }
+    while (steepest(factors_.size())) {
+    }
+    for (std::size_t i = 0; i < factors_.size(); ++i) {
+      if (factors_[i] > 1 && !go_if_better(times(i, 0.5), 0)) go_if_better(times(i, 2), kGain);
     }
   }
 
-  NoiseFit result() const { return {times(told_, factors_), best_ - first_, tried_}; }
+  NoiseFit result() const { return {raised(told_, factors_), best_ - first_, tried_}; }
 
  private:
   double value(const Factors& factors) {
     ++tried_;
-    return log_likelihood(way_, times(told_, factors), layout_);
+    return log_likelihood(way_, raised(told_, factors), layout_) + log_prior(factors);
   }
 
-  /// Goes there if it is.
-  bool better(std::size_t i, double factor) {
+  Factors times(std::size_t i, double factor) const {
     Factors next = factors_;
     next[i] *= factor;
+    return next;
+  }
+
+  struct Found {
+    Factors at;
+    double value;
+  };
+
+  /// To the best of the first axes, each gone along as far as it helps.
+  bool steepest(std::size_t axes) {
+    Found best{factors_, best_ + kGain};
+    for (std::size_t i = 0; i < axes; ++i) {
+      const Found found = best_along(i);
+      if (found.value > best.value) best = found;
+    }
+    if (best.at == factors_) return false;
+    factors_ = best.at;
+    best_ = best.value;
+    return true;
+  }
+
+  Found best_along(std::size_t i) {
+    Found best{factors_, best_};
+    for (double factor = kCoarse; factors_[i] * factor <= kLargest; factor *= kCoarse) {
+      const Factors next = times(i, factor);
+      const double found = value(next);
+      if (!(found > best.value)) break;
+      best = {next, found};
+    }
+    return best;
+  }
+
+  bool go_if_better(const Factors& next, double gain) {
     const double found = value(next);
-    if (!(found > best_ + (factor > 1 ? kGain : 0))) return false;
+    if (!(found > best_ + gain)) return false;
     factors_ = next;
     best_ = found;
     return true;

@@ -21,7 +21,7 @@ VehiclePoint vehicle_point(const BodyStretch& stretch, const Eigen::Matrix3d& C_
   VehiclePoint point;
   point.velocity_v = M * told_v;
   point.H.setZero(3, layout.size());
-  point.H.leftCols<state::kNodeSize>() = by_b * u.J;
+  point.H.leftCols(u.J.cols()) = by_b * u.J;
   state::columns_of(point.H, state::block::gyro_bias) += by_b * so3::skew(l_b);
   if (arm) state::columns_of(point.H, *arm) = by_b * so3::skew(omega_b);
   if (mounting) {

@@ -1,5 +1,7 @@
 #include "aiding.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -127,14 +129,23 @@ std::optional<Aiding::Rest> Aiding::rest(const state::Epoch& now, bool held,
   constexpr double kMissed = 1e-3;
   if (!stands(now, held) || !options_.aids.uses(options_.aids.zero_velocity)) return std::nullopt;
   const double dt = seconds_between(begin_ns_, end_ns_);
-  const double rate_sigma = std::max(options_.imu.gyro_noise_density / std::sqrt(dt),
-                                     stretch_.shake.mean_rate_sigma());
+  const double rate_sigma =
+      std::max(options_.imu.gyro_noise_density / std::sqrt(dt), stretch_.shake.mean_rate_sigma());
   const Rest rest{
       std::make_shared<measurement::ZeroVelocity>(options_.aids.zero_velocity_sigma_m_s),
       std::make_shared<measurement::ZeroRate>(stretch_.turned_b / dt, rate_sigma)};
   if (agreement(navigator.innovation(*rest.velocity)) < kMissed) return std::nullopt;
   if (agreement(navigator.innovation(*rest.rate)) < kMissed) return std::nullopt;
   return rest;
+}
+
+std::optional<std::string> Aiding::remark() const {
+  const std::optional<diagnosis::SlipFindings>& found = slip_.slip();
+  if (options_.aids.nonholonomic != "auto" || !any_ || !found || slip_sigma()) return std::nullopt;
+  return fmt::format(
+      "that wheels do not slip was not used: beside rolling forward it moves by {:.2f} m/s to the "
+      "side and {:.2f} m/s up and down (1 sigma); `vehicle.kind: car` would assume it",
+      found->deviation[0], found->deviation[1]);
 }
 
 std::optional<Eigen::Vector2d> Aiding::slip_sigma() const {

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <deque>
 #include <optional>
+#include <string>
 
 #include "foucault/diagnosis/rest_levels.h"
 #include "foucault/diagnosis/slip_watch.h"
@@ -38,7 +39,8 @@ class Aiding {
   /// Uses what there is. held: fixes hold the state.
   void stop(int64_t t_ns, bool held, measurement::Navigator& navigator);
 
-  const diagnosis::SlipWatch& slip_watch() const { return slip_; }
+  /// Why wheels were not assumed, one line; none if they were, or nothing is known.
+  std::optional<std::string> remark() const;
 
  private:
   struct Stretch {

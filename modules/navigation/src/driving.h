@@ -60,6 +60,8 @@ class Driving {
   const measurement::Navigator& navigator() const { return *navigator_; }
   const diagnosis::FixJudge& judge() const { return gate_.judge(); }
   std::vector<GnssFix> pending_fixes() const { return stops_.pending_fixes(); }
+  /// Of the aids, at the end.
+  std::optional<std::string> remark() const { return aiding_.remark(); }
   int64_t late_fixes() const { return late_; }  ///< left out: they came after later ones
 
   /// For a fix that does not come so far.

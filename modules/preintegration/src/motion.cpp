@@ -236,7 +236,7 @@ state::NodeBySlow slow_jacobian(const MotionResidual& m, const state::Layout& la
   if (const state::SlowBlock* accel = layout.find(accel_scale))
     J.middleCols<3>(accel->index) = m.J_accel_scale;
   if (const state::SlowBlock* gyro = layout.find(gyro_cross_axis))
-    J.middleCols<6>(gyro->index) << m.J_gyro_cross[0], m.J_gyro_cross[1];
+    J.middleCols(gyro->index, gyro->block.size) << m.J_gyro_cross[0], m.J_gyro_cross[1];
   if (const state::SlowBlock* accel = layout.find(accel_cross_axis))
     J.middleCols<3>(accel->index) = m.J_accel_cross;
   return J;

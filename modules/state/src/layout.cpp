@@ -63,7 +63,7 @@ ImuScale Layout::imu_scale(const SlowVector& slow) const {
   if (const SlowBlock* accel = find(block::accel_scale))
     scale.accel = slow.segment<3>(accel->index);
   if (const SlowBlock* gyro = find(block::gyro_cross_axis))
-    scale.gyro_cross = slow.segment<6>(gyro->index);
+    scale.gyro_cross = slow.segment(gyro->index, gyro->block.size);
   if (const SlowBlock* accel = find(block::accel_cross_axis))
     scale.accel_cross = slow.segment<3>(accel->index);
   return scale;

@@ -14,7 +14,7 @@ double log_likelihood(const RecordedWay& way, const imu::ImuNoise& noise,
 
 struct NoiseFit {
   imu::ImuNoise noise;
-  double gain = 0;  ///< of the logarithm of the likelihood
+  double gain = 0;  ///< of the logarithm of likelihood and prior
   int tried = 0;
 };
 
@@ -22,8 +22,10 @@ struct NoiseFit {
 /// recording rises by more than chance would have it once in ten thousand (chi-square of one
 /// degree of freedom: 7.6 for twice that many factors that are tried). Data sheets are of one
 /// temperature and of no vibration: real noise is larger, never smaller, and what is told is not
-/// lowered. Coordinates in turn, accelerometers first, white noise before variations; factors by
-/// four, then by two.
+/// lowered. What is told is right within a factor of four, one sigma of the logarithm. White noise
+/// first, then what it leaves to the variations: from fix to fix the two look alike, and a bias
+/// that is said to wander is lost in an outage. Steps by four along the axis that helps most, then
+/// by two.
 NoiseFit raised_noise(const RecordedWay& way, const imu::ImuNoise& told,
                       const state::Layout& layout);
 

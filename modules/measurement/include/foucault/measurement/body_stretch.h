@@ -34,7 +34,7 @@ struct BodyStretch {
 /// Mean velocity and its derivatives by the errors of the node's blocks.
 struct BodyVelocity {
   Eigen::Vector3d value_b = Eigen::Vector3d::Zero();  ///< of the IMU [m/s]
-  Eigen::Matrix<double, 3, state::kNodeSize> J = Eigen::Matrix<double, 3, state::kNodeSize>::Zero();
+  state::RowsByState<3> J = state::RowsByState<3>::Zero(3, state::state_size(0));
 };
 BodyVelocity body_velocity(const BodyStretch& stretch, const state::NavState& x);
 
