@@ -63,7 +63,7 @@ class Evaluate : public testing::Test {
 };
 
 TEST_F(Evaluate, WritesTablesNumbersAndReport) {
-  const Outcome outcome = evaluate("out", {});
+  const Outcome outcome = evaluate("out", {"--paper"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(outcome.err, IsEmpty());
   EXPECT_THAT(outcome.out, AllOf(HasSubstr("2 of 10 s in 1 recording; truth: the reference"),

@@ -157,7 +157,8 @@ TEST_F(Report, OfATripWithFaultsShowsEachInItsLane) {
   const Operation imu = on_imu(damage_imu);
   operate_on_log(folder_ / "trip.rawlog", folder_ / "faults.rawlog",
                  [&](mrpt::obs::CObservation& o) { return gnss(o) && imu(o); });
-  const json metrics = run("faults.rawlog", "faults");
+  const json metrics =
+      run("faults.rawlog", "faults", {"--set", "aids.mode=none", "--set", "calibrate.mode=none"});
   EXPECT_GT(metrics["gnss"]["rejected"], 20);
   EXPECT_EQ(metrics["consistency"]["nis"]["samples"], metrics["gnss"]["samples"]);
 

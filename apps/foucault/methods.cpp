@@ -17,12 +17,20 @@ namespace {
 
 constexpr double kForever = std::numeric_limits<double>::infinity();
 
+/// Where it is not estimated how the IMU sits in the vehicle, wheels are believed only if told so:
+/// a degree that is not known is a slip of 2 %.
+void without_wheels(measurement::AidOptions& aids) {
+  for (std::string* wheels : {&aids.nonholonomic, &aids.wheel_speed})
+    if (*wheels == "auto") *wheels = "off";
+}
+
 navigation::NavigationRunOptions run_options(const Settings& settings,
                                              const state::Mounting& mounting) {
   navigation::NavigationRunOptions options;
   options.gnss = settings.gnss;
   options.gaps = settings.gaps;
   options.aids = settings.aids;
+  if (!settings.calibrate.layout().find(state::block::mounting)) without_wheels(options.aids);
   options.node_interval_s = settings.fgo.node_interval_s;
   options.rate = settings.output.epoch_rate();
   options.imu = settings.imu.noise();

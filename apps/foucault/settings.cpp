@@ -21,6 +21,8 @@ navigation::EpochRate OutputOptions::epoch_rate() const {
   return rate == "imu" ? navigation::EpochRate::imu : navigation::EpochRate::epochs;
 }
 
+Settings::Settings() { aids.zero_velocity = aids.nonholonomic = aids.wheel_speed = "auto"; }
+
 Settings Settings::of_paper() {
   Settings settings;
   settings.aids.mode = settings.calibrate.mode = "none";

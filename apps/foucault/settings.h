@@ -50,6 +50,8 @@ class Settings : public Configurable {
   evaluation::OutageOptions outages;  ///< for evaluate and tune
   OutputOptions output;
 
+  /// What the recording carries is used (`auto`).
+  Settings();
   /// As in the paper: position fixes alone, 15 states.
   static Settings of_paper();
 

@@ -66,7 +66,7 @@ std::unique_ptr<state::Source> with_imu(Change change) {
 }
 
 evaluation::RunMetrics run(std::unique_ptr<state::Source> source, const std::string& method,
-                           const Settings& settings = {}) {
+                           const Settings& settings = Settings::of_paper()) {
   evaluation::RunMetricsCollector collector(source->mounting());
   const std::unique_ptr<state::Estimator> estimator =
       find_method(method).make(settings, source->mounting(), collector);

@@ -52,7 +52,14 @@ tuning::SearchPlan plan(const TuneJob& job, Console& console) {
   const auto surveyor = std::make_shared<Surveyor>(console);
   const auto runs = [&job, surveyor](const std::string& log, const std::string& method,
                                      const tuning::GridPoint& point) {
-    const Settings settings = surveyor->complete(log, settings_for(log, job.at(point)));
+    // What the recording shows is asked once, at the base: points are compared with each other. The
+    // noise is what is tuned.
+    const auto as_told = [&log](Settings settings) {
+      settings.calibrate.imu_noise = "off";
+      return settings_for(log, settings);
+    };
+    surveyor->complete(log, as_told(job.base));
+    const Settings settings = surveyor->complete(log, as_told(job.at(point)));
     return experiment_runs({log, log, settings.imu.preset, method, "", settings});
   };
   return {job.config,

@@ -20,8 +20,10 @@ constexpr double kHuber = 2;  // deviations
 constexpr double kMountingSigma = 0.17, kArmSigma = 1.5;
 constexpr double kLeastDeviation = 0.01;  // [m/s], below which no road is smooth
 
-/// Deviation by the median, and of white noise of as much power a sample: correlations are summed
-/// up in pairs until one is negative (Geyer, Statistical Science 7, 1992).
+/// Deviation beyond what is explained, with two sigmas of what so many values tell of it, so that
+/// errors of the state do not pass for the absence of slip; and of white noise of as much power a
+/// sample: correlations are summed up in pairs until one is negative (Geyer, Statistical Science 7,
+/// 1992).
 struct Noise {
   double deviation = 0, white = 0;
 };
@@ -49,7 +51,8 @@ Noise noise_of(const std::vector<double>& r, double explained) {
     if (pair <= 0) break;
     factor += 2 * pair;
   }
-  const double beyond = std::sqrt(std::max(variance - explained, 0.0));
+  const double known_to = 2 * variance * std::sqrt(2 * factor / static_cast<double>(n));
+  const double beyond = std::sqrt(std::max(variance - explained, 0.0) + known_to);
   const double deviation = std::max(beyond, kLeastDeviation);
   return {deviation, deviation * std::sqrt(factor)};
 }

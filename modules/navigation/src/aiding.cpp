@@ -119,7 +119,7 @@ bool Aiding::stands(const state::Epoch& now, bool held) {
   const bool still = sigma < kKnown && speed < kCreeps + 2 * sigma;
   if (held && still) levels_.learn(*level, true);
   if (held && speed > kMoves + 4 * sigma) levels_.learn(*level, false);
-  return still ? odds > 0 : odds > kCertain;
+  return still ? odds >= 0 : odds > kCertain;
 }
 
 /// A hover, a turn on the spot or a straight at constant speed is none: one in a thousand true ones

@@ -33,6 +33,7 @@ class AidingTest : public ::testing::Test {
   void SetUp() override {
     options_.imu = imu::imu_preset("ADIS16465");
     options_.gnss.gate_false_alarm = 1e-7;
+    options_.aids.zero_velocity = options_.aids.nonholonomic = options_.aids.wheel_speed = "auto";
   }
 
   /// A second of 100 Hz that ends in a stop.

@@ -9,17 +9,18 @@
 
 namespace foucault::measurement {
 
-/// Section `aids` of the configuration: what is measured beside positions.
+/// Section `aids` of the configuration: what is measured beside positions. Off here; the program
+/// sets `auto`.
 class AidOptions : public Configurable {
  public:
   std::string mode = "auto";          ///< auto: as below | none: positions alone
   std::string gnss_velocity = "off";  ///< on | off
   std::optional<double> gnss_velocity_sigma_m_s;
-  std::string zero_velocity = "auto";  ///< auto | on | off
+  std::string zero_velocity = "off";  ///< auto | on | off
   double zero_velocity_sigma_m_s = 0.02;
-  std::string nonholonomic = "auto";             ///< auto | on | off
+  std::string nonholonomic = "off";             ///< auto | on | off
   std::optional<double> nonholonomic_sigma_m_s;  ///< not set: as the recording shows
-  std::string wheel_speed = "auto";              ///< auto | on | off
+  std::string wheel_speed = "off";              ///< auto | on | off
   std::optional<double> wheel_speed_sigma_m_s;   ///< not set: as the recording shows
 
   void fields(ConfigFields& f) override;

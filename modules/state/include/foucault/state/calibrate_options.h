@@ -15,7 +15,7 @@ class CalibrateOptions : public Configurable {
   /// auto | on | off
   std::string gyro_scale = "auto", accel_scale = "auto";
   std::string gyro_cross_axis = "off", accel_cross_axis = "off";
-  std::string imu_noise = "auto";  ///< no block: raised where the recording contradicts it
+  std::string imu_noise = "off";  ///< no block: raised where the recording contradicts it
   std::string lever_arm = "auto";
   std::string time_offset = "auto", time_drift = "auto";
   std::string mounting = "auto", wheel_scale = "auto", wheel_lever_arm = "auto";
