@@ -139,7 +139,7 @@ TEST(RunText, Verdicts) {
 }
 
 TEST(RunPage, ATableForWhatThereIs) {
-  EXPECT_EQ(metrics_tables(some_result()).size(), 4u);
+  EXPECT_EQ(metrics_tables(some_result()).size(), 2u);  // calibration and aids have sections
   EXPECT_TRUE(metrics_tables({}).empty());
   EXPECT_EQ(key_numbers(some_result()).size(), 6u);
   EXPECT_EQ(key_numbers({}).size(), 3u);

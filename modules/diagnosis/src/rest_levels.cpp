@@ -7,24 +7,24 @@
 namespace foucault::diagnosis {
 namespace {
 
-constexpr int kLeastSamples = 8;
-constexpr std::size_t kMemory = 600;  // stretches: ten minutes
+constexpr int kLeastShakes = 8;
+constexpr std::size_t kLevelsMemory = 600;  // stretches: ten minutes
 /// Standard deviations of a hundred samples are known to 7 %, a factor of 0.07 in the logarithm.
-constexpr double kSmoothing = 0.1;
+constexpr double kLevelSmoothing = 0.1;
 /// Levels lie anywhere over three decades before anything is known of them.
-constexpr double kBroad = 7;
+constexpr double kBroadLevels = 7;
 
-double density(const std::deque<ShakeLevel>& learned, const ShakeLevel& level) {
-  double sum = 1 / (kBroad * kBroad);
+double level_density(const std::deque<ShakeLevel>& learned, const ShakeLevel& level) {
+  double sum = 1 / (kBroadLevels * kBroadLevels);
   for (const ShakeLevel& known : learned) {
-    const double square = std::pow((known.force - level.force) / kSmoothing, 2) +
-                          std::pow((known.rate - level.rate) / kSmoothing, 2);
-    sum += std::exp(-0.5 * square) / (2 * kPi * kSmoothing * kSmoothing);
+    const double square = std::pow((known.force - level.force) / kLevelSmoothing, 2) +
+                          std::pow((known.rate - level.rate) / kLevelSmoothing, 2);
+    sum += std::exp(-0.5 * square) / (2 * kPi * kLevelSmoothing * kLevelSmoothing);
   }
   return sum / static_cast<double>(learned.size() + 1);
 }
 
-double log_deviation(double variance) { return 0.5 * std::log(std::max(variance, 1e-20)); }
+double log_level(double variance) { return 0.5 * std::log(std::max(variance, 1e-20)); }
 
 }  // namespace
 
@@ -48,19 +48,18 @@ double ShakeMeter::mean_rate_sigma() const {
 }
 
 std::optional<ShakeLevel> ShakeMeter::level() const {
-  if (samples_ < kLeastSamples) return std::nullopt;
-  return ShakeLevel{log_deviation(variance().head<3>().sum()),
-                    log_deviation(variance().tail<3>().sum())};
+  if (samples_ < kLeastShakes) return std::nullopt;
+  return ShakeLevel{log_level(variance().head<3>().sum()), log_level(variance().tail<3>().sum())};
 }
 
 void RestLevels::learn(const ShakeLevel& level, bool at_rest) {
   std::deque<ShakeLevel>& learned = at_rest ? rest_ : motion_;
   learned.push_back(level);
-  if (learned.size() > kMemory) learned.pop_front();
+  if (learned.size() > kLevelsMemory) learned.pop_front();
 }
 
 double RestLevels::log_odds(const ShakeLevel& level) const {
-  return std::log(density(rest_, level) / density(motion_, level));
+  return std::log(level_density(rest_, level) / level_density(motion_, level));
 }
 
 }  // namespace foucault::diagnosis

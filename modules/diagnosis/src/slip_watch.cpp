@@ -11,24 +11,24 @@
 namespace foucault::diagnosis {
 namespace {
 
-constexpr std::size_t kMemory = 600;  // stretches: ten minutes in motion
-constexpr std::size_t kLeast = 30;
-constexpr int kEvery = 10;    // stretches from fit to fit
-constexpr double kMoves = 1;  // [m/s]; below, a mounting says nothing
-constexpr double kHuber = 2;  // deviations
+constexpr std::size_t kSlipMemory = 600;  // stretches: ten minutes in motion
+constexpr std::size_t kLeastStretches = 30;
+constexpr int kFitEvery = 10;     // stretches from fit to fit
+constexpr double kMovesAt = 1;    // [m/s]; below, a mounting says nothing
+constexpr double kSlipHuber = 2;  // deviations
 /// What is known of the fit before: 10 deg, 1.5 m.
-constexpr double kMountingSigma = 0.17, kArmSigma = 1.5;
-constexpr double kLeastDeviation = 0.01;  // [m/s], below which no road is smooth
+constexpr double kSlipMountingSigma = 0.17, kSlipArmSigma = 1.5;
+constexpr double kLeastSlip = 0.01;  // [m/s], below which no road is smooth
 
 /// Deviation beyond what is explained, with two sigmas of what so many values tell of it, so that
 /// errors of the state do not pass for the absence of slip; and of white noise of as much power a
 /// sample: correlations are summed up in pairs until one is negative (Geyer, Statistical Science 7,
 /// 1992).
-struct Noise {
+struct SlipNoise {
   double deviation = 0, white = 0;
 };
 
-Noise noise_of(const std::vector<double>& r, double explained) {
+SlipNoise slip_noise_of(const std::vector<double>& r, double explained) {
   std::vector<double> magnitudes;
   for (const double value : r) magnitudes.push_back(std::abs(value));
   const double robust = median(magnitudes) / 0.6745;
@@ -53,7 +53,7 @@ Noise noise_of(const std::vector<double>& r, double explained) {
   }
   const double known_to = 2 * variance * std::sqrt(2 * factor / static_cast<double>(n));
   const double beyond = std::sqrt(std::max(variance - explained, 0.0) + known_to);
-  const double deviation = std::max(beyond, kLeastDeviation);
+  const double deviation = std::max(beyond, kLeastSlip);
   return {deviation, deviation * std::sqrt(factor)};
 }
 
@@ -62,12 +62,12 @@ Noise noise_of(const std::vector<double>& r, double explained) {
 void SlipWatch::add(const measurement::BodyStretch& stretch, const state::Epoch& epoch,
                     const std::optional<double>& wheel) {
   const measurement::BodyVelocity u = measurement::body_velocity(stretch, epoch);
-  if (u.value_b.norm() < kMoves) return;
+  if (u.value_b.norm() < kMovesAt) return;
   const Eigen::Matrix3d covariance_b = u.J * state::node_part(epoch.covariance) * u.J.transpose();
   samples_.push_back({C_v_b_ * u.value_b, C_v_b_ * (stretch.rate_b - epoch.bias.gyro),
                       C_v_b_ * covariance_b * C_v_b_.transpose(), wheel});
-  if (samples_.size() > kMemory) samples_.pop_front();
-  if (samples_.size() < kLeast || ++since_fit_ < kEvery) return;
+  if (samples_.size() > kSlipMemory) samples_.pop_front();
+  if (samples_.size() < kLeastStretches || ++since_fit_ < kFitEvery) return;
   since_fit_ = 0;
   fit();
 }
@@ -88,7 +88,8 @@ void SlipWatch::fit() {
 void SlipWatch::step() {
   using Information = Eigen::Matrix<double, 5, 5>;
   Fit prior;
-  prior << Eigen::Vector2d::Constant(1 / kMountingSigma), Eigen::Vector3d::Constant(1 / kArmSigma);
+  prior << Eigen::Vector2d::Constant(1 / kSlipMountingSigma),
+      Eigen::Vector3d::Constant(1 / kSlipArmSigma);
   Information A = prior.cwiseAbs2().asDiagonal();
   Fit b = -prior.cwiseAbs2().cwiseProduct(fit_);
   const Eigen::Vector3d turn(0, fit_[0], fit_[1]);
@@ -105,7 +106,7 @@ void SlipWatch::step() {
     for (int axis = 1; axis < 3; ++axis) {
       const double sigma = std::sqrt(P(axis, axis) + std::pow(spread_[axis - 1], 2));
       const double size = std::abs(p[axis]) / sigma;
-      const double weight = (size > kHuber ? kHuber / size : 1) / (sigma * sigma);
+      const double weight = (size > kSlipHuber ? kSlipHuber / size : 1) / (sigma * sigma);
       A += weight * J.row(axis).transpose() * J.row(axis);
       b -= weight * J.row(axis).transpose() * p[axis];
     }
@@ -118,7 +119,7 @@ void SlipWatch::step() {
     down.push_back(std::abs(p.z()));
   }
   spread_ = Eigen::Vector2d(median(right), median(down)) / 0.6745;
-  spread_ = spread_.cwiseMax(kLeastDeviation);
+  spread_ = spread_.cwiseMax(kLeastSlip);
 }
 
 void SlipWatch::judge_slip() {
@@ -136,8 +137,8 @@ void SlipWatch::judge_slip() {
     explained_down.push_back(sample.covariance_v(2, 2));
     squares += sample.velocity_v.squaredNorm();
   }
-  const Noise to_right = noise_of(right, median(explained_right));
-  const Noise downward = noise_of(down, median(explained_down));
+  const SlipNoise to_right = slip_noise_of(right, median(explained_right));
+  const SlipNoise downward = slip_noise_of(down, median(explained_down));
   found.deviation = {to_right.deviation, downward.deviation};
   found.white = {to_right.white, downward.white};
   found.speed = std::sqrt(squares / static_cast<double>(samples_.size()));
@@ -148,10 +149,10 @@ void SlipWatch::judge_slip() {
 void SlipWatch::judge_wheel() {
   std::vector<double> ratios, r, explained;
   for (const Sample& sample : samples_) {
-    if (!sample.wheel || std::abs(*sample.wheel) < 0.5 * kMoves) continue;
+    if (!sample.wheel || std::abs(*sample.wheel) < 0.5 * kMovesAt) continue;
     ratios.push_back(point_velocity(sample, fit_).x() / *sample.wheel);
   }
-  if (ratios.size() < kLeast) return;
+  if (ratios.size() < kLeastStretches) return;
   WheelFindings found;
   found.samples = static_cast<int>(ratios.size());
   found.scale = median(ratios) - 1;
@@ -160,7 +161,7 @@ void SlipWatch::judge_wheel() {
     r.push_back(point_velocity(sample, fit_).x() - (1 + found.scale) * *sample.wheel);
     explained.push_back(sample.covariance_v(0, 0));
   }
-  const Noise noise = noise_of(r, median(explained));
+  const SlipNoise noise = slip_noise_of(r, median(explained));
   found.deviation = noise.deviation;
   found.white = noise.white;
   wheel_ = found;
