@@ -144,7 +144,7 @@ std::optional<std::string> Aiding::remark() const {
   if (options_.aids.nonholonomic != "auto" || !any_ || !found || slip_sigma()) return std::nullopt;
   return fmt::format(
       "that wheels do not slip was not used: beside rolling forward it moves by {:.2f} m/s to the "
-      "side and {:.2f} m/s up and down (1 sigma); `vehicle.kind: car` would assume it",
+      "side and {:.2f} m/s up and down (1 sigma)",
       found->deviation[0], found->deviation[1]);
 }
 
