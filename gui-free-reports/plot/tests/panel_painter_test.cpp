@@ -58,6 +58,21 @@ TEST(PanelPainter, AnnotationsStandOnTheirSideOrTheOtherAtTheBorder) {
   EXPECT_EQ(ink_beside(50, Side::left, kAll), 0) << "outside of the axes";
 }
 
+TEST(PanelPainter, LinesThatLeaveTheAxisAreMarkedThere) {
+  Figure figure = curve({0, 4, 5, 6, 10}, {1, 1, 1, 1, 1});
+  figure.panels[0].y.min = 0;
+  figure.panels[0].y.max = 2;
+  figure.panels[0].series[0].ink = Ink::purple;
+  const cv::Rect2d top(0.15, 0, 0.8, 0.35);
+  EXPECT_EQ(drawn(figure, Ink::purple, top), 0);
+  figure.panels[0].series[0].y[2] = -9;
+  EXPECT_EQ(drawn(figure, Ink::purple, top), 0);
+  figure.panels[0].series[0].y[2] = 9;
+  const int line_and_head = drawn(figure, Ink::purple, top);
+  figure.panels[0].equal_aspect = true;  // maps have no heads
+  EXPECT_GT(line_and_head, 60);
+}
+
 TEST(PanelPainter, ShadesReachAsFarAsTheAxes) {
   Figure figure = hidden_curve();
   const auto pale = [&](double begin, double end) {

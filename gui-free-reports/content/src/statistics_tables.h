@@ -1,0 +1,15 @@
+#pragma once
+
+#include <vector>
+
+#include "foucault/page/report_page.h"
+#include "run_data.h"
+
+namespace foucault::content {
+
+/// Mean, RMS, median, 95 % and maximum by axis of the errors against a reference; empty without.
+std::vector<page::Table> error_statistics(const RunData& data);
+/// The same of innovations and of residuals after use.
+std::vector<page::Table> innovation_statistics(const RunData& data);
+
+}  // namespace foucault::content
