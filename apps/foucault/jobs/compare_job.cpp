@@ -21,7 +21,6 @@ namespace foucault::app {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::json;
 
 std::vector<std::string_view> cells_of(std::string_view line) {
   std::vector<std::string_view> cells;
@@ -110,17 +109,17 @@ class SolutionReader {
   std::vector<std::size_t> places_;
 };
 
-std::string word(const Json& json, const char* pointer) {
-  const Json::json_pointer at(pointer);
+std::string word(const nlohmann::json& json, const char* pointer) {
+  const nlohmann::json::json_pointer at(pointer);
   if (!json.contains(at) || json.at(at).is_null()) return "–";
-  const Json& value = json.at(at);
+  const nlohmann::json& value = json.at(at);
   if (value.is_string()) return value.get<std::string>();
   if (value.is_boolean()) return value.get<bool>() ? "yes" : "no";
   if (value.is_number_float()) return fmt::format("{:.4g}", value.get<double>());
   return value.dump();
 }
 
-std::vector<std::pair<std::string, std::string>> facts_of(const Json& m) {
+std::vector<std::pair<std::string, std::string>> facts_of(const nlohmann::json& m) {
   return {{"Log", word(m, "/log")},
           {"Method", word(m, "/method")},
           {"Trustworthy", word(m, "/trustworthy")},
@@ -141,10 +140,10 @@ content::ComparedRun read_run(const std::string& folder) {
   run.epochs = SolutionReader(path / "solution.csv").epochs();
   const std::string metrics = (path / "metrics.json").string();
   try {
-    const Json json = Json::parse(plot::read_file(metrics));
+    const nlohmann::json json = nlohmann::json::parse(plot::read_file(metrics));
     run.method = word(json, "/method");
     run.facts = facts_of(json);
-  } catch (const Json::exception& error) {
+  } catch (const nlohmann::json::exception& error) {
     throw DataError(fmt::format("'{}': {}", metrics, error.what()));
   }
   return run;

@@ -78,8 +78,8 @@ Table missing_figures(const ReportPage& page, const RunData& data, const std::st
        fmt::format("{} gives one solution; `foucault compare` shows two runs together", method)});
   table.rows.push_back({"Drift in outages, growth, distribution, ablation",
                         "no outage is simulated in a run; `foucault evaluate` does it"});
-  table.rows.push_back({"Allan deviation",
-                        "it takes hours at rest; `foucault allan` draws it from such a recording"});
+  table.rows.push_back(
+      {"Allan deviation", "it takes a recording of hours at rest, not one of motion"});
   table.rows.push_back({"Time and iterations of the solver, an epoch",
                         "they are not kept; `run --profile` times the stages"});
   return table;

@@ -22,7 +22,6 @@ namespace {
 constexpr const char* kHeading = "Heading";
 constexpr Names kEuler{"Roll", "Pitch", kHeading};
 constexpr Names kXyz{"x axis", "y axis", "z axis"};
-constexpr std::array<Ink, 3> kAxisInks{Ink::blue, Ink::vermillion, Ink::green};
 
 std::string column_name(const char* axis, const std::string& noun) {
   return std::string(axis) + " " + noun;
@@ -323,8 +322,9 @@ Panel sigma_panel(const RunData& data, const Triad& triad, const std::string& la
   panel.y.kind = AxisKind::log;
   panel.legend = LegendPlace::panel;
   for (size_t i = 0; i < 3; ++i) {
-    panel.series.push_back(line(axes[i], kAxisInks[i], rows.x, rows.columns[i + 3]));
+    panel.series.push_back(line(axes[i], kTriadInks[i], rows.x, rows.columns[i + 3]));
     panel.series.back().column = label + " sigma " + axes[i];
+    panel.series.back().dash = kTriadDashes[i];
   }
   return panel;
 }
@@ -442,16 +442,17 @@ std::optional<Figure> postfit_figure(const RunData& data, const std::string& sub
 
 namespace {
 
-Panel step_panel(const RunData& data, const StepWatch& watch, const std::string& label, Ink ink) {
+/// `gaps`: how many there are, of samples that were left out, too.
+Panel step_panel(const RunData& data, const StepWatch& watch, size_t gaps,
+                 const std::string& label) {
   Panel panel = time_panel(data, {label, "s"});
   const DecimatedTable::Rows rows = watch.steps().rows();
-  panel.series.push_back(line(label, ink, rows.x, rows.columns[0]));
+  panel.series.push_back(line(label, Ink::blue, rows.x, rows.columns[0]));
   panel.series.back().mark = Mark::steps;
   panel.series.back().size = 0.9;
   panel.series.back().in_legend = false;
-  panel.note =
-      fmt::format("{} Hz · longest {} s · {} gap{}", significant_text(watch.rate()),
-                  significant_text(watch.longest()), watch.gaps(), watch.gaps() == 1 ? "" : "s");
+  panel.note = fmt::format("{} Hz · longest {} s · {} gap{}", significant_text(watch.rate()),
+                           significant_text(watch.longest()), gaps, gaps == 1 ? "" : "s");
   if (watch.longest() * watch.rate() > 20) {
     panel.y.kind = AxisKind::log;
   } else if (watch.longest() < 0.5) {
@@ -504,10 +505,12 @@ std::optional<Figure> data_health_figure(const RunData& data, const std::string&
       "Time between IMU samples, time between GNSS fixes that were used, and fix types over time. "
       "Healthy intervals lie on one level; every gap stands out above it.");
   if (data.imu_steps.stamps() > 1) {
-    figure.panels.push_back(step_panel(data, data.imu_steps, "IMU interval", Ink::blue));
+    figure.panels.push_back(
+        step_panel(data, data.imu_steps, data.imu_gaps().count, "IMU interval"));
   }
   if (data.fix_steps.stamps() > 1) {
-    figure.panels.push_back(step_panel(data, data.fix_steps, "Used-fix interval", Ink::blue));
+    figure.panels.push_back(
+        step_panel(data, data.fix_steps, data.fix_steps.gaps(), "Used-fix interval"));
   }
   if (!data.fix_types.empty()) {
     figure.panels.push_back(type_panel(data));

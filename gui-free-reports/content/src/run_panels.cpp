@@ -113,13 +113,13 @@ void tell_narrow_bounds(const std::vector<double>& sigma, Panel& panel) {
   const auto middle = finite.begin() + static_cast<std::ptrdiff_t>(finite.size() / 2);
   std::nth_element(finite.begin(), middle, finite.end());
   if (*middle >= seen) return;
-  const double factor = 3 * panel.y.shown_factor;
-  const std::string& unit = shown_unit(panel.y);
-  panel.note =
-      joined({panel.note,
-              fmt::format("3σ: median {} {}, largest {} {}", significant_text(*middle * factor, 2),
-                          unit, significant_text(largest_finite(finite) * factor, 2), unit)},
-             " · ");
+  const std::string unit = (shown_unit(panel.y) == "°" ? "" : " ") + shown_unit(panel.y);
+  const auto width = [&](double s) {
+    return significant_text(3 * panel.y.shown_factor * s, 2) + unit;
+  };
+  panel.note = joined({panel.note, fmt::format("3σ: median {}, largest {}", width(*middle),
+                                               width(largest_finite(finite)))},
+                      " · ");
   if (largest_finite(finite) < seen) panel.series.front().in_legend = false;
 }
 

@@ -13,6 +13,11 @@ namespace foucault::content {
 
 using Names = std::array<const char*, 3>;
 constexpr Names kNed{"North", "East", "Down"};
+/// Three curves of one panel, told apart in grey, too.
+constexpr std::array<plot::Ink, 3> kTriadInks{plot::Ink::blue, plot::Ink::vermillion,
+                                              plot::Ink::green};
+constexpr std::array<plot::Dash, 3> kTriadDashes{plot::Dash::none, plot::Dash::dashes,
+                                                 plot::Dash::dash_dot};
 
 /// UTC with GPS week and second: both clocks that readers use.
 std::string clock_text(int64_t t_ns);

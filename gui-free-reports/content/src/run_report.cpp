@@ -144,7 +144,8 @@ class RunReport::Collector {
     page.key_numbers = key_numbers;
     for (const Section& section :
          {overview(), timeline_section(data, subtitle()),
-          Section{"Errors", {}, error_statistics(data), error_figures(data, subtitle())},
+          Section{"Errors", error_words(data), error_statistics(data),
+                  error_figures(data, subtitle())},
           consistency_section(data, subtitle()), gnss(), aids_section(data, aids, subtitle()),
           calibration_section(data, subtitle()), solution(),
           Section{"Sensor biases", {}, {}, bias_figures(data, subtitle())}, health()}) {

@@ -16,8 +16,6 @@ using namespace plot;
 
 namespace {
 
-constexpr std::array<Ink, 3> kTriadInks{Ink::blue, Ink::vermillion, Ink::green};
-constexpr std::array<Dash, 3> kTriadDashes{Dash::none, Dash::dashes, Dash::dash_dot};
 constexpr Names kSensorAxes{"x", "y", "z"};
 
 /// The three signals of one sensor.
@@ -36,6 +34,7 @@ Series triad_line(const std::string& label, size_t axis, std::vector<double> x,
                   std::vector<double> y, const std::string& column) {
   Series series = line(label, kTriadInks[axis], std::move(x), std::move(y));
   series.column = column;
+  series.dash = kTriadDashes[axis];
   return series;
 }
 
@@ -127,7 +126,6 @@ Panel sigmas_panel(const RunData& data) {
   for (size_t axis = 0; axis < 3; ++axis) {
     panel.series.push_back(triad_line(kNed[axis], axis, rows.x, rows.columns[axis],
                                       fmt::format("Sigma {}", kNed[axis])));
-    panel.series.back().dash = kTriadDashes[axis];
   }
   return panel;
 }

@@ -1,6 +1,8 @@
 #include "statistics_tables.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <string>
 
 #include "foucault/plot/text.h"
@@ -60,6 +62,25 @@ std::vector<Table> tables_of(const RunData& data, const std::vector<StatisticsLo
 }  // namespace
 
 std::vector<Table> error_statistics(const RunData& data) { return tables_of(data, kErrorLooks); }
+
+std::vector<std::string> error_words(const RunData& data) {
+  const AxisStatistics& s = data.attitude_error.statistics;
+  const StatisticsLook& look = kErrorLooks.back();
+  std::vector<std::string> parts;
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    const double mean = s.mean()[axis];
+    const double spread = std::sqrt(std::max(0.0, std::pow(s.rms()[axis], 2) - mean * mean));
+    const bool is_constant = std::abs(mean) > 5 * spread && s.inside_3_sigma()[axis] < 0.5;
+    if (!is_constant) continue;
+    parts.push_back(look.axes[static_cast<size_t>(axis)] + (" by " + significant_text(mean)) +
+                    "° ± " + significant_text(spread, 2) + "°");
+  }
+  if (parts.empty()) return {};
+  return {"Angles that differ from the reference by a constant: " + joined(parts, "; ") +
+          ". That is an angle between the axes of the reference and those of the vehicle as they "
+          "were told (see the mounting under Calibration, where it is estimated), not an error "
+          "that the sigmas speak of."};
+}
 
 std::vector<Table> innovation_statistics(const RunData& data) {
   return tables_of(data, kInnovationLooks);

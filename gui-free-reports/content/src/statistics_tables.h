@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "foucault/page/report_page.h"
@@ -9,7 +10,10 @@ namespace foucault::content {
 
 /// Mean, RMS, median, 95 % and maximum by axis of the errors against a reference; empty without.
 std::vector<page::Table> error_statistics(const RunData& data);
-/// The same of innovations and of residuals after use.
+/// Names angles that differ from the reference by a constant far above their sigmas: axes that are
+/// not the same.
+std::vector<std::string> error_words(const RunData& data);
+/// Statistics of innovations and of residuals after use.
 std::vector<page::Table> innovation_statistics(const RunData& data);
 
 }  // namespace foucault::content

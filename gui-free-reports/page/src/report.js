@@ -398,7 +398,7 @@ function nearest(values, wanted) {
 
 class Figure {
   constructor(element, spec) {
-    Object.assign(this, {element, spec, off: new Set(), seen: false, drag: null});
+    Object.assign(this, {element, spec, off: new Set(), samples: [], seen: false, drag: null});
     this.build();
     this.panels = spec.panels.map(p => new Panel(p, this));
     this.legend();
@@ -470,15 +470,21 @@ class Figure {
   }
 
   sample(s) {
-    const c = document.createElement('canvas'), ratio = 2;
-    c.width = 26 * ratio, c.height = 12 * ratio;
+    const c = document.createElement('canvas');
+    const draw = () => this.drawSample(c, s);
+    this.samples.push(draw), draw();
+    return c;
+  }
+
+  drawSample(c, s) {
+    const ratio = 2;
+    c.width = 26 * ratio, c.height = 12 * ratio;  // clears it, too
     const g = c.getContext('2d');
-    g.scale(ratio, ratio), g.strokeStyle = g.fillStyle = s.ink === 'black' ? css('--ink') : page.inks[s.ink];
+    g.scale(ratio, ratio), g.strokeStyle = g.fillStyle = colour(s.ink);
     g.lineWidth = Math.max(1.6, s.size || 1), g.globalAlpha = Math.max(0.35, s.opacity);
     if (s.mark === 'points') marker(g, s.shape, 13, 6, 4);
     else if (s.mark === 'band' || s.mark === 'bars') g.fillRect(2, 1, 22, 10);
     else g.setLineDash(DASHES[s.dash] || []), g.beginPath(), g.moveTo(1, 6), g.lineTo(25, 6), g.stroke();
-    return c;
   }
 
   toggle(label, button) {
@@ -699,7 +705,10 @@ for (const element of document.querySelectorAll('figure')) {
   if (spec) figures.push(new Figure(element, spec));
 }
 addEventListener('resize', repaint);
-dark.addEventListener('change', repaint);
+dark.addEventListener('change', () => {
+  for (const f of figures) for (const draw of f.samples) draw();
+  repaint();
+});
 // Folded parts are open on paper.
 addEventListener('beforeprint', () => document.querySelectorAll('details').forEach(d => d.open = true));
 window.liveReport = {figures, shared, page};

@@ -189,7 +189,10 @@ std::string tables(const std::vector<Table>& tables) {
   return html + "</div>\n";
 }
 
-bool is_curve(const Series& series) { return !series.y.empty() && series.in_legend; }
+/// Broken lines are bounds.
+bool is_curve(const Series& series) {
+  return !series.y.empty() && series.in_legend && series.dash == Dash::none;
+}
 
 /// What one sees of a panel: where its last curve runs, and its note.
 std::string seen_in(const Panel& panel) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <set>
 
 #include "foucault/plot/axis_scale.h"
@@ -12,7 +13,6 @@ namespace {
 constexpr double kPoints = 9.5;
 constexpr double kRow = 5.0 * kPixelsPerMillimetre;
 constexpr double kSample = 5.5 * kPixelsPerMillimetre;
-constexpr double kBrokenSample = 9 * kPixelsPerMillimetre;
 constexpr double kMarkerSample = 3 * kPixelsPerMillimetre;
 constexpr double kGap = 1.5 * kPixelsPerMillimetre;
 constexpr double kBetween = 5.0 * kPixelsPerMillimetre;
@@ -78,9 +78,21 @@ class View {
   Span x_, y_;
 };
 
+double pen_width(const LegendEntry& entry) { return std::max(1.6, entry.size) * kPixelsPerPoint; }
+
+/// Whole strokes of a pattern, as many as make it known, in widths of the line.
+double pattern_length(Dash dash) {
+  const std::vector<double> pattern = dash_pattern(dash);
+  const double period = std::accumulate(pattern.begin(), pattern.end(), 0.0);
+  if (dash == Dash::dots) return 4 * period - pattern.back();
+  if (dash == Dash::dash_dot) return period + pattern.front();
+  return 2 * period - pattern.back();
+}
+
 double sample_width(const LegendEntry& entry) {
   if (entry.sample == LegendEntry::Sample::marker) return kMarkerSample;
-  return entry.dash == Dash::none ? kSample : kBrokenSample;
+  if (entry.sample == LegendEntry::Sample::patch || entry.dash == Dash::none) return kSample;
+  return pattern_length(entry.dash) * pen_width(entry) + 2 * entry.size;
 }
 
 std::vector<Polyline> line_sample(const LegendEntry& entry, double x, double middle) {
@@ -94,8 +106,7 @@ void draw_sample(Surface& canvas, const LegendEntry& entry, double x, double mid
   switch (entry.sample) {
     case LegendEntry::Sample::line:
       return canvas.polylines(line_sample(entry, x, middle),
-                              {colour, std::max(1.6, entry.size) * kPixelsPerPoint,
-                               std::max(entry.opacity, 0.5), entry.dash},
+                              {colour, pen_width(entry), std::max(entry.opacity, 0.5), entry.dash},
                               everywhere);
     case LegendEntry::Sample::marker:
       return canvas.markers({centre}, entry.shape, std::max(5.5, entry.size) * kPixelsPerPoint,
