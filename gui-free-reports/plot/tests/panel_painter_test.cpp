@@ -64,7 +64,7 @@ TEST(PanelPainter, LinesThatLeaveTheAxisAreMarkedThere) {
   figure.panels[0].y.max = 2;
   figure.panels[0].series[0].ink = Ink::purple;
   // Over the middle, where the line itself is beyond the axis.
-  const cv::Rect2d above(0.53, 0, 0.026, 0.4);
+  const cv::Rect2d above(0.505, 0, 0.036, 0.4);
   EXPECT_EQ(drawn(figure, Ink::purple, above), 0);
   figure.panels[0].series[0].y[2] = -9;
   EXPECT_EQ(drawn(figure, Ink::purple, above), 0);
