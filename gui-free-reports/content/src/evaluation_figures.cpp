@@ -35,6 +35,12 @@ Series method_series(const std::string& method, const MethodOrder& order) {
   return series;
 }
 
+/// Broken lines over unbroken ones, so that lines that coincide are both seen.
+void solid_first(std::vector<Series>& lines) {
+  std::stable_partition(lines.begin(), lines.end(),
+                        [](const Series& line) { return line.dash == Dash::none; });
+}
+
 /// Lower-case letters, digits and '_' of a name, for files.
 std::string file_part(const std::string& name) {
   std::string result;
@@ -366,6 +372,7 @@ Panel growth_panel(const DriftCase& drift_case, const MethodOrder& order,
     panel.series.push_back(std::move(series));
     marks.push_back(growth_marks(curves, order, component, length));
   }
+  solid_first(panel.series);
   panel.series.insert(panel.series.end(), marks.begin(), marks.end());
   return panel;
 }
@@ -807,6 +814,7 @@ Figure error_timeline(const ErrorTimeline& timeline, const MethodOrder& order) {
     series.y = curve.horizontal_m;
     panel.series.push_back(std::move(series));
   }
+  solid_first(panel.series);
   Figure figure{"error_timeline_" + file_part(timeline.name), "Horizontal error over time",
                 timeline.subtitle,
                 "Horizontal position error on a logarithmic axis. It rises during outages and has "

@@ -176,7 +176,7 @@ class LayoutMaker {
   Ticks x_ticks(const AxisScale& scale, int width) {
     const int wanted = std::max(2, int(width / kSpacePerXTick));
     const bool few = labelled(scale.ticks(wanted)) < 3;
-    for (int count = wanted + 1; few && count <= wanted + 2; ++count) {
+    for (int count = wanted + 1; few && count <= wanted + 4; ++count) {
       Ticks ticks = scale.ticks(count);
       if (labelled(ticks) >= 3 && fits(ticks, width)) return ticks;
     }
