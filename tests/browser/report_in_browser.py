@@ -15,7 +15,7 @@ import tempfile
 import time
 
 SKIPPED = 77
-SLOWEST_S = 1.0      # until a page is there
+SLOWEST_S = 1.0      # of the browser's main thread, until a page is there; machines may be busy
 LARGEST_BYTES = 3e6  # of a page
 
 
@@ -44,6 +44,7 @@ class Browser:
                                  flatten=True)['sessionId']
         for domain in ('Page', 'Runtime', 'Log', 'Network'):
             self.call(domain + '.enable')
+        self.call('Performance.enable', timeDomain='threadTicks')
 
     def receive(self):
         while b'\0' not in self.rest:
@@ -75,13 +76,18 @@ class Browser:
             raise RuntimeError(expression + ': ' + json.dumps(result['exceptionDetails']))
         return result['result'].get('value')
 
+    def busy(self):
+        """Time that the main thread has worked [s], others on the machine not counted."""
+        metrics = self.call('Performance.getMetrics')['metrics']
+        return next(m['value'] for m in metrics if m['name'] == 'TaskDuration')
+
     def open(self, page):
-        begin = time.monotonic()
+        """Returns how long the main thread worked for it [s]."""
         self.call('Page.navigate', url='file://' + page)
         while self.value('document.readyState') != 'complete':
             time.sleep(0.01)
         self.value('new Promise(r => requestAnimationFrame(() => requestAnimationFrame(r)))')
-        return time.monotonic() - begin
+        return self.busy()  # counts from the navigation on
 
     def settle(self):
         self.value('new Promise(r => requestAnimationFrame(() => requestAnimationFrame(r)))')
@@ -247,7 +253,7 @@ def check(page, chromium, shots=None):
     try:
         browser.open(page)  # the browser itself is warm afterwards
         took = browser.open(page)
-        checks.that(took < SLOWEST_S, f'the page is there after {took:.2f} s')
+        checks.that(took < SLOWEST_S, f'the page is there after {took:.2f} s of work')
         size = os.path.getsize(page)
         checks.that(size < LARGEST_BYTES, f'it has {size / 1e6:.2f} MB')
         live = browser.value('liveReport.figures.length')
