@@ -40,6 +40,7 @@ std::function<void(Call&)> declare_check(CLI::App& app);
 std::function<void(Call&)> declare_run(CLI::App& app);
 std::function<void(Call&)> declare_evaluate(CLI::App& app);
 std::function<void(Call&)> declare_tune(CLI::App& app);
+std::function<void(Call&)> declare_learn(CLI::App& app);
 std::function<void(Call&)> declare_lab(CLI::App& app);
 std::function<void(Call&)> declare_report(CLI::App& app);
 

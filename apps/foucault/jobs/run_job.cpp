@@ -106,8 +106,9 @@ RunResult run_into(const RunJob& job, const std::filesystem::path& folder, Conso
   rawlog::RawlogSource source(job.log, settings.imu.sample_kind(), settings.rawlog);
   const state::Told known = told(settings, source);
   std::optional<content::RunReport> report;
-  if (job.report) report.emplace(labels(job, config), source.mounting(), known);
-  RunOutput output(folder, source.mounting(), settings.output, method.keep_references_s,
+  const state::Mounting mounting = source.mounting().with(known.layout);
+  if (job.report) report.emplace(labels(job, config), mounting, known);
+  RunOutput output(folder, mounting, settings.output, method.keep_references_s,
                    report ? &*report : nullptr, console);
   const std::unique_ptr<state::Estimator> estimator =
       method.make(settings, source.mounting(), output);

@@ -84,21 +84,6 @@ bool leaves_open(const Settings& settings) {
           (c.mounting == "auto" || c.wheel_scale == "auto" || c.wheel_lever_arm == "auto"));
 }
 
-LearnedNoise noise_of(const calibration::NoiseModel& model, const calibration::RecordedWay& way) {
-  using calibration::NoiseOf;
-  LearnedNoise noise;
-  noise.imu = model.imu;
-  noise.imu.gyro_turn_on_sigma = std::max(noise.imu.gyro_turn_on_sigma, noise.imu.gyro_bias_sigma);
-  noise.imu.accel_turn_on_sigma =
-      std::max(noise.imu.accel_turn_on_sigma, noise.imu.accel_bias_sigma);
-  noise.sigma_scale = model.fix_white;
-  const Eigen::Vector3d slip = told_sigma(way, NoiseOf::slip);
-  if (slip[0] > 0) noise.slip_m_s = Eigen::Vector2d(model.slip * slip[0], model.bounce * slip[1]);
-  const double wheel = told_sigma(way, NoiseOf::wheel)[0];
-  if (wheel > 0) noise.wheel_m_s = model.wheel * wheel;
-  return noise;
-}
-
 std::string noise_text(const Settings& settings) {
   std::string text = fmt::format(
       "imu.arw_deg_sqrt_h {:.3g}, vrw_m_s_sqrt_h {:.3g}, gyro_bias_deg_h {:.3g}, accel_bias_mgal "
@@ -116,6 +101,28 @@ std::string noise_text(const Settings& settings) {
 }
 
 }  // namespace
+
+calibration::RecordedWay recorded_way(const std::string& log, const Settings& settings,
+                                      Console& console) {
+  const std::optional<Watcher> watcher = look_through(log, settings, console);
+  if (!watcher) return {};
+  return calibration::folded(watcher->way, watcher->last->slow);
+}
+
+LearnedNoise noise_of(const calibration::NoiseModel& model, const calibration::RecordedWay& way) {
+  using calibration::NoiseOf;
+  LearnedNoise noise;
+  noise.imu = model.imu;
+  noise.imu.gyro_turn_on_sigma = std::max(noise.imu.gyro_turn_on_sigma, noise.imu.gyro_bias_sigma);
+  noise.imu.accel_turn_on_sigma =
+      std::max(noise.imu.accel_turn_on_sigma, noise.imu.accel_bias_sigma);
+  noise.sigma_scale = model.fix_white;
+  const Eigen::Vector3d slip = told_sigma(way, NoiseOf::slip);
+  if (slip[0] > 0) noise.slip_m_s = Eigen::Vector2d(model.slip * slip[0], model.bounce * slip[1]);
+  const double wheel = told_sigma(way, NoiseOf::wheel)[0];
+  if (wheel > 0) noise.wheel_m_s = model.wheel * wheel;
+  return noise;
+}
 
 void LearnedNoise::apply_to(Settings& settings) const {
   settings.imu = settings.imu.with(imu);

@@ -30,6 +30,14 @@ struct Survey {
   std::vector<evaluation::CalibratedBlock> blocks, told;
 };
 
+/// The way of a filter through a log with settings that are complete; empty if it cannot be
+/// processed or is shorter than a minute.
+calibration::RecordedWay recorded_way(const std::string& log, const Settings& settings,
+                                      Console& console);
+
+/// As the settings have it. `way`: on which it was learned.
+LearnedNoise noise_of(const calibration::NoiseModel& model, const calibration::RecordedWay& way);
+
 /// Looks through logs where the settings leave something to the recording (`auto`, the time
 /// offset): a filter with all that may be estimated goes through the log; what it does not come to
 /// use is not estimated afterwards. An estimate of a time offset is of the first order: fixes are

@@ -214,6 +214,18 @@ std::vector<LearnedAxis> learned_axes(const LearnOptions& options, const NoiseMo
   return out;
 }
 
+/// From a fifth to five times the value.
+void add_profiles(Landscape& landscape, const Place& best, std::vector<LearnedAxis>& axes) {
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    for (const double factor : {0.2, 0.35, 0.5, 0.7, 0.85, 1.0, 1.2, 1.4, 2.0, 2.8, 5.0}) {
+      Eigen::VectorXd x = best.x;
+      x[static_cast<Eigen::Index>(i)] += std::log(factor);
+      axes[i].profile_factors.push_back(factor);
+      axes[i].profile.push_back(place_at(landscape, x).height - best.height);
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<NoiseAxis> NoiseAxes::all() const {
@@ -247,11 +259,18 @@ Learned learn(const std::vector<RecordedWay>& ways, const NoiseModel& told,
   Learned out;
   out.noise = landscape.at(best.x);
   out.axes = learned_axes(options, told, out.noise, best.information.inverse());
+  if (options.profile) add_profiles(landscape, best, out.axes);
   out.gain = best.height - before.height;
   out.passes = coarse.passes() + landscape.passes();
   out.before = normalized_errors(before.predictions);
   out.after = normalized_errors(best.predictions);
   return out;
+}
+
+double log_likelihood(const std::vector<RecordedWay>& ways, const NoiseModel& noise,
+                      const LearnOptions& options) {
+  Landscape landscape(ways, noise, options, options.starts);
+  return place_at(landscape, landscape.origin()).height;
 }
 
 }  // namespace foucault::calibration

@@ -35,7 +35,7 @@ class DriftMeter : public state::Sink {
         source_(std::move(source), schedule,
                 [this](const Outage& outage, const GnssFix& fix) { withheld(outage, fix); }),
         comparison_(
-            source_.mounting(),
+            source_.mounting().with(options.layout),
             [this](const state::Epoch& epoch, const state::ReferenceError& error) {
               reference_error(epoch, error);
             },

@@ -36,6 +36,32 @@ TEST(VehicleAttitude, SigmaFollowsTheMounting) {
   EXPECT_NEAR(attitude.sigma[2], 0.03, 1e-15);
 }
 
+/// Where the mounting is estimated, too, with what the two have in common.
+TEST(VehicleAttitude, CovarianceIsByThePerturbationsOfAttitudeAndMounting) {
+  Layout layout;
+  layout.add(block::lever_arm, 1).add(block::mounting, 0.2);
+  const Mounting mounting = Mounting{so3::exp({0.3, -1.1, 2.0})}.with(layout);
+  Epoch epoch;
+  epoch.q_n_b = so3::from_euler({0.3, 0.9, 2.5}) * mounting.q_v_b;
+  epoch.slow = SlowVector::Zero(layout.slow_size());
+  epoch.slow.segment<2>(layout.find(block::mounting)->index) << 0.05, -0.2;
+  std::mt19937 rng{7};
+  std::normal_distribution<double> normal;
+  const StateMatrix root =
+      1e-3 * StateMatrix::NullaryExpr(layout.size(), layout.size(), [&] { return normal(rng); });
+  epoch.covariance = root * root.transpose();
+  const VehicleAttitude mean = vehicle_attitude(epoch, mounting);
+  Eigen::Matrix3d expected = Eigen::Matrix3d::Zero();
+  for (int i = 0; i < layout.size(); ++i) {
+    Epoch moved = epoch;
+    static_cast<NavState&>(moved) = boxplus(epoch, 1e-3 * root.col(i));
+    const Eigen::Vector3d turned =
+        1e3 * so3::log(mean.q_n_v.conjugate() * vehicle_attitude(moved, mounting).q_n_v);
+    expected += turned * turned.transpose();
+  }
+  EXPECT_LT((mean.covariance_v - expected).norm(), 1e-4 * expected.norm());
+}
+
 TEST(VehicleAttitude, SigmaIsThatOfSampledAttitudes) {
   std::mt19937 rng{42};
   std::normal_distribution<double> normal;

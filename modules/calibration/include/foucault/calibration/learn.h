@@ -15,6 +15,7 @@ struct LearnOptions {
   std::vector<double> horizons_s = {5, 15, 30, 60};
   /// Of predictions, at least 5 s and at most 60 s apart; a quarter of them until the top is near.
   int starts = 60;
+  bool profile = false;  ///< of each axis
 };
 
 /// One number that was to be learned.
@@ -23,6 +24,8 @@ struct LearnedAxis {
   double told = 0, value = 0;
   double log_sigma = 0;    ///< of the logarithm, by the curvature of the likelihood
   bool observable = true;  ///< the recording tells at least half of what is known of it
+  /// Logarithm of the likelihood over that of the value, by factors of the value, all else as it is.
+  std::vector<double> profile_factors, profile;
 };
 
 struct Learned {
@@ -49,5 +52,9 @@ NoiseAxes axes_of(const std::vector<RecordedWay>& ways);
 /// Ways are of one vehicle. Deterministic.
 Learned learn(const std::vector<RecordedWay>& ways, const NoiseModel& told,
               const LearnOptions& options);
+
+/// Logarithm of the densities of all predictions, as learn() weighs them, without a prior.
+double log_likelihood(const std::vector<RecordedWay>& ways, const NoiseModel& noise,
+                      const LearnOptions& options);
 
 }  // namespace foucault::calibration

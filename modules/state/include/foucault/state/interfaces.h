@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "foucault/core/measurement.h"
+#include "foucault/state/layout.h"
 #include "foucault/state/result.h"
 
 /// The three roles data walks through: Source -> Estimator -> Sink. Each streams: memory does not
@@ -13,6 +14,13 @@ namespace foucault::state {
 /// How the IMU sits in the vehicle.
 struct Mounting {
   Eigen::Quaterniond q_v_b = Eigen::Quaterniond::Identity();  ///< b to forward-right-down
+  /// block::mounting of what is estimated, which corrects that; none: as it was told.
+  std::optional<SlowBlock> estimated = std::nullopt;
+
+  Mounting with(const Layout& layout) const {
+    const SlowBlock* block = layout.find(block::mounting);
+    return {q_v_b, block ? std::optional<SlowBlock>(*block) : std::nullopt};
+  }
 };
 
 /// Time-ordered measurements (order: see Measurement).
