@@ -275,7 +275,8 @@ TEST_F(Store, MpiRanks) {
     const std::string name = std::string("mpi-") + which;
     const std::string command = std::string(which) == "tune" ? tune() : evaluate();
     const Outcome worked =
-        in(name, "mpirun --allow-run-as-root --oversubscribe -np 2 " + command + " --shard auto");
+        in(name, "mpirun --allow-run-as-root --oversubscribe --bind-to none -np 2 " + command +
+                     " --shard auto");
     EXPECT_EQ(worked.exit_code, 0) << worked.err;
     expect_merge_as_whole(name, which);
   }
