@@ -48,7 +48,7 @@ std::unique_ptr<rawlog::RawlogSource> open_log(const std::string& log, const Set
 
 /// An estimator does not know where its measurements come from; whoever reads its errors should.
 template <class Work>
-auto naming(const std::string& recording, Work work) {
+auto naming_recording(const std::string& recording, Work work) {
   try {
     return work();
   } catch (const UsageError&) {
@@ -66,10 +66,10 @@ class NamedEstimator : public state::Estimator {
       : name_(std::move(name)), estimator_(std::move(estimator)) {}
 
   void process(const Measurement& measurement) override {
-    naming(name_, [&] { estimator_->process(measurement); });
+    naming_recording(name_, [&] { estimator_->process(measurement); });
   }
   void finish() override {
-    naming(name_, [&] { estimator_->finish(); });
+    naming_recording(name_, [&] { estimator_->finish(); });
   }
 
  private:
@@ -168,7 +168,7 @@ evaluation::ExperimentRun experiment_run(const EvaluationCase& c, double shift_s
   };
   run.make_estimator = [make = method.make, settings = c.settings, name = c.recording](
                            const state::Mounting& mounting, state::Sink& sink) {
-    return naming(name, [&] {
+    return naming_recording(name, [&] {
       return std::make_unique<NamedEstimator>(name, make(*settings, mounting, sink));
     });
   };
