@@ -16,6 +16,7 @@ build_packages=(
 test_packages=(
   libgtest-dev libgmock-dev libgeographiclib-dev
   chromium python3 # reports as readers see them
+  parallel openmpi-bin slurmctld slurmd slurm-client munge # engines that start workers
 )
 
 fail() {

@@ -185,18 +185,21 @@ class Tune : public Evaluate {
 
 TEST_F(Tune, GoesOnAfterItWasStopped) {
   ASSERT_EQ(foucault(tune("whole")).exit_code, 0);
-  const fs::path points = folder_.path() / "parts/points.csv";
+  const fs::path store = folder_.path() / ".parts.foucault-records";
   const auto half_done = [&] {
-    return fs::exists(points) && folder_.lines("parts/points.csv").size() > 12;
+    std::error_code ignored;
+    const fs::recursive_directory_iterator records(store, ignored);
+    return std::distance(records, {}) > 24;  // each in a folder, nearly
   };
   const Outcome stopped = foucault_interrupted(tune("parts"), half_done, SIGTERM);
   EXPECT_EQ(stopped.exit_code, 143) << stopped.err;
-  EXPECT_THAT(stopped.err, HasSubstr("points are kept"));
+  EXPECT_THAT(stopped.err, HasSubstr("runs are kept in"));
   EXPECT_FALSE(fs::exists(folder_.path() / "parts/best.yaml"));
 
   const Outcome resumed = foucault(tune("parts"));
   ASSERT_EQ(resumed.exit_code, 0) << resumed.err;
-  EXPECT_THAT(resumed.out, HasSubstr("resumed"));
+  EXPECT_THAT(resumed.out, HasSubstr("found in"));
+  EXPECT_FALSE(fs::exists(store));
   for (const char* name : {"/best.yaml", "/results.csv", "/metrics.json"}) {
     EXPECT_EQ(folder_.text(std::string("parts") + name), folder_.text(std::string("whole") + name))
         << name;

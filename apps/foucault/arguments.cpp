@@ -9,6 +9,7 @@
 
 #include "command.h"
 #include "foucault/core/error.h"
+#include "jobs/run_store.h"
 
 namespace foucault::app {
 
@@ -34,6 +35,20 @@ void add_jobs_option(CLI::App& app, int& jobs, const std::string& what) {
   app.add_option("--jobs", jobs, what + " at the same time")
       ->check(CLI::Range(1, 1024))
       ->capture_default_str();
+}
+
+void add_store_options(CLI::App& app, StoreArguments& arguments) {
+  app.add_option("--store", arguments.folder,
+                 "Folder for finished runs, kept for later calls and shared by workers; default: a "
+                 "hidden one beside --out, removed when the results are written");
+  app.add_option(
+         "--shard", arguments.shard,
+         "Only compute a share of the runs into the store, as one of many workers: i/n (1/8 "
+         "to 8/8); auto: as Slurm, MPI or AWS Batch say; auto/n: index from the engine "
+         "(Kubernetes). Then the same command without --shard writes the results")
+      ->type_name("I/N");
+  app.add_flag("--no-compute", arguments.no_compute,
+               "Write the results of what is in the store, or say how many runs are missing");
 }
 
 void add_no_report_flag(CLI::App& app, bool& no_report) {

@@ -14,6 +14,8 @@ class App;
 /// Options that several subcommands have.
 namespace foucault::app {
 
+struct StoreArguments;
+
 /// --config and --set of a subcommand.
 struct ConfigArguments {
   std::string file;
@@ -30,6 +32,9 @@ void add_help_text(CLI::App& app, const std::string& flag, const std::string& de
 
 /// Adds --jobs N.
 void add_jobs_option(CLI::App& app, int& jobs, const std::string& what = "Runs");
+
+/// Adds --store DIR, --shard and --no-compute.
+void add_store_options(CLI::App& app, StoreArguments& arguments);
 
 /// Adds --no-report.
 void add_no_report_flag(CLI::App& app, bool& no_report);

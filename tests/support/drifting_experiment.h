@@ -23,6 +23,7 @@ inline evaluation::ExperimentRun drifting_run(const std::string& recording,
   run.imu = "none";
   run.method = method;
   run.shift_s = shift_s;
+  run.needs_outage = shift_s == 0;
   run.schedule = evaluation::OutageSchedule(outages, shift_s);
   run.open = [duration_s, with_reference] {
     return std::make_unique<RestSource>(duration_s, with_reference);

@@ -69,6 +69,12 @@ Outcome foucault_after(const std::string& preparation, const std::vector<std::st
   return Child("/bin/sh", words).wait();
 }
 
+Outcome shell(const std::string& script) {
+  return Child("/bin/sh", {"-c", script, kProgramPath}).wait();
+}
+
+std::filesystem::path tests_folder() { return std::filesystem::path(kSourceFolder) / "tests"; }
+
 Outcome foucault_disturbed(const std::vector<std::string>& arguments,
                            const std::function<bool()>& now,
                            const std::function<void(pid_t)>& act) {

@@ -23,6 +23,12 @@ Outcome foucault(const std::vector<std::string>& arguments);
 /// The same from a shell that has done `preparation` before: "ulimit -f 100", "exec > /dev/full".
 Outcome foucault_after(const std::string& preparation, const std::vector<std::string>& arguments);
 
+/// Runs a script of the shell; "$0" in it is the built `foucault`.
+Outcome shell(const std::string& script);
+
+/// The sources' folder tests/.
+std::filesystem::path tests_folder();
+
 /// Starts it, acts on it once `now` says so (or after a minute), and waits for its end.
 Outcome foucault_disturbed(const std::vector<std::string>& arguments,
                            const std::function<bool()>& now, const std::function<void(pid_t)>& act);

@@ -28,8 +28,8 @@ PaperExperiment experiment_of(const DemoOptions& options) {
 }
 
 void evaluate_into(const std::vector<EvaluationCase>& cases, const EvaluationLabels& labels,
-                   int jobs, const std::filesystem::path& folder, Console& console) {
-  const evaluation::EvaluationSummary summary(evaluate(cases, jobs, console));
+                   RunStore& store, const std::filesystem::path& folder, Console& console) {
+  const evaluation::EvaluationSummary summary(evaluate(cases, store, console));
   std::filesystem::create_directories(folder);
   write_evaluation(summary, labels, true, folder, console);
   console.say("");
@@ -52,7 +52,7 @@ void main_job(const PaperExperiment& experiment, const std::filesystem::path& re
   }
 }
 
-void run_demo(const DemoOptions& options, Call& call) {
+void run_demo(const DemoOptions& options, RunStore& store, Call& call) {
   OutputDirectory directory(options.out);
   const std::filesystem::path folder = directory.staging();
   const std::filesystem::path recordings = folder / "recordings";
@@ -70,12 +70,13 @@ void run_demo(const DemoOptions& options, Call& call) {
   labels.title = "The paper's experiment, noise as simulated";
   labels.remarks = laboratory::remarks_as_simulated();
   evaluate_into(evaluation_cases(laboratory::cases_as_simulated(experiment), recordings), labels,
-                options.jobs, folder, call.console);
+                store, folder, call.console);
   labels.title = "The paper's experiment, noise tuned for each method";
   labels.remarks = laboratory::remarks_tuned();
-  evaluate_into(evaluation_cases(laboratory::cases_tuned(experiment), recordings), labels,
-                options.jobs, folder / "tuned", call.console);
+  evaluate_into(evaluation_cases(laboratory::cases_tuned(experiment), recordings), labels, store,
+                folder / "tuned", call.console);
   directory.commit();
+  store.finish();
 
   const std::filesystem::path out = options.out;
   call.console.say("");
@@ -97,7 +98,10 @@ std::function<void(Call&)> declare_demo(CLI::App& app) {
       "report (DIR/trip), then withholds GNSS for 60 s every 150 s and compares the drift of ekf,\n"
       "refined and rough: Tables III and IV, with the noise that was simulated (DIR/report) and\n"
       "with noise tuned for each method (DIR/tuned/report).");
-  return [o](Call& call) { run_demo(*o, call); };
+  return [o](Call& call) {
+    RunStore store({}, o->out, o->jobs);
+    store.keep_if_stopped(call.console, [&] { run_demo(*o, store, call); });
+  };
 }
 
 }  // namespace foucault::app

@@ -23,6 +23,7 @@ struct EvaluateOptions {
   std::vector<std::string> logs;
   std::vector<std::string> methods = kPaperMethods;
   ConfigArguments config;
+  StoreArguments store;
   int jobs = evaluation::processor_count();
   std::string out;
   bool ablate = false;
@@ -40,28 +41,52 @@ EvaluationLabels labels(Settings settings, const std::string& command_line) {
   return labels;
 }
 
-void evaluate_logs(const EvaluateOptions& options, Call& call) {
+/// What is to be compared, and how it is told.
+struct EvaluationPlan {
+  std::vector<EvaluationCase> cases;
+  EvaluationLabels labels;
+};
+
+EvaluationPlan plan_of(const EvaluateOptions& options, const std::string& command_line) {
   Settings settings = options.paper ? Settings::of_paper() : Settings();
   apply(options.config, settings);
   const std::vector<std::string>& methods = options.paper ? kPaperMethods : options.methods;
   Ablation ablation{cross(options.logs, methods, settings), {}};
   if (options.ablate) ablation = with_parts_off(ablation.cases);
+  EvaluationPlan plan{std::move(ablation.cases), labels(settings, command_line)};
+  plan.labels.ablation = std::move(ablation.names);
+  return plan;
+}
+
+void write_results(const EvaluationPlan& plan, const EvaluateOptions& options, RunStore& store,
+                   Console& console) {
   OutputDirectory directory(options.out);
-  Evaluation evaluation = evaluate_what_is_there(ablation.cases, options.jobs, call.console);
+  Evaluation evaluation = evaluate_what_is_there(plan.cases, store, console);
   const evaluation::EvaluationSummary summary(std::move(evaluation.results));
-  EvaluationLabels texts = labels(settings, call.command_line);
-  texts.ablation = ablation.names;
-  write_evaluation(summary, texts, !options.no_report, directory.staging(), call.console);
+  write_evaluation(summary, plan.labels, !options.no_report, directory.staging(), console);
   directory.commit();
-  call.console.say(options.ablate ? evaluation::ablation_lines(summary, ablation.names)
-                                  : evaluation::evaluation_lines(summary));
-  call.console.say(written_lines(options.out, !options.no_report));
+  store.finish();
+  console.say(options.ablate ? evaluation::ablation_lines(summary, plan.labels.ablation)
+                             : evaluation::evaluation_lines(summary));
+  console.say(written_lines(options.out, !options.no_report));
   std::vector<std::string> lacking = evaluation.damages;
   lacking.insert(lacking.end(), evaluation.failures.begin(), evaluation.failures.end());
   if (!lacking.empty()) {
     throw DataError(fmt::format("{}; the results in '{}' are of what is there",
                                 fmt::join(lacking, "; "), options.out));
   }
+}
+
+void evaluate_logs(const EvaluateOptions& options, Call& call) {
+  const EvaluationPlan plan = plan_of(options, call.command_line);
+  RunStore store(options.store, options.out, options.jobs);
+  store.keep_if_stopped(call.console, [&] {
+    if (store.is_worker()) {
+      evaluate_what_is_there(plan.cases, store, call.console);
+    } else {
+      write_results(plan, options, store, call.console);
+    }
+  });
 }
 
 }  // namespace
@@ -86,6 +111,7 @@ std::function<void(Call&)> declare_evaluate(CLI::App& app) {
   app.add_option("--out", o->out, "Folder for drift.csv, metrics.json, tables/, report/")
       ->required();
   add_no_report_flag(app, o->no_report);
+  add_store_options(app, o->store);
   app.footer(
       "\nExamples:\n"
       "  foucault evaluate trip.rawlog --out trip-outages\n"
@@ -93,6 +119,7 @@ std::function<void(Call&)> declare_evaluate(CLI::App& app) {
       "  foucault evaluate trip.rawlog --methods ekf --ablate --out trip-worth\n"
       "  foucault evaluate short.rawlog --set outages.first_s=85 --set outages.length_s=15 \\\n"
       "      --set outages.period_s=45 --set outages.shifts_s=[0] --out short\n"
+      "  foucault evaluate *.rawlog --out all --store runs --shard auto    one of many workers\n"
       "Outages come from the keys outages.* of the configuration; by default 60 s every 150 s "
       "after "
       "510 s,\nand again with starts 75 s later.");

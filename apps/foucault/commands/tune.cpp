@@ -21,18 +21,20 @@ std::function<void(Call&)> declare_tune(CLI::App& app) {
   struct Options {
     TuneJob job;
     ConfigArguments config;
+    StoreArguments store;
+    int jobs = evaluation::processor_count();
     bool no_report = false;
   };
   const auto o = std::make_shared<Options>();
-  o->job.threads = evaluation::processor_count();
   app.add_option("LOG", o->job.logs, "Rawlogs")->required();
   add_config_options(app, o->config, config_help);
   app.get_option("--config")->required()->description("The grid, YAML");
   app.get_option("--set")->description("One key of the base; may be repeated");
-  add_jobs_option(app, o->job.threads);
-  app.add_option("--out", o->job.out, "Folder for points.csv, results.csv, best.yaml, report/")
+  add_jobs_option(app, o->jobs);
+  app.add_option("--out", o->job.out, "Folder for results.csv, points.csv, best.yaml, report/")
       ->required();
   add_no_report_flag(app, o->no_report);
+  add_store_options(app, o->store);
   app.footer(
       "\nExample of a grid:\n"
       "  base: {imu: {preset: ADIS16465}}      # any keys of the configuration\n"
@@ -42,12 +44,16 @@ std::function<void(Call&)> declare_tune(CLI::App& app) {
       "  method: rough                         # or methods: [refined, rough]\n"
       "  objective: horizontal                 # vertical; weighted\n"
       "  search: coarse_to_fine                # full\n"
-      "Finished points are kept in DIR/points.csv: after a kill the same command goes on there.");
+      "Finished runs are kept, by default in .DIR.foucault-records until the results are written:\n"
+      "after a kill the same command goes on there.");
   return [o](Call& call) {
     load_grid(o->config.file, o->config.assignments, o->job);
     o->job.report = !o->no_report;
     o->job.command_line = call.command_line;
-    call.console.say(tune(o->job, call.console));
+    RunStore store(o->store, o->job.out, o->jobs);
+    store.keep_if_stopped(call.console,
+                          [&] { call.console.say(tune(o->job, store, call.console)); });
+    store.finish();
   };
 }
 

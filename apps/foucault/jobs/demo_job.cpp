@@ -44,8 +44,8 @@ std::vector<EvaluationCase> evaluation_cases(const std::vector<laboratory::Paper
       settings.imu.gyro_bias_deg_h = what.noise->gyro_bias_deg_h;
       settings.imu.arw_deg_sqrt_h = what.noise->arw_deg_sqrt_h;
     }
-    all.push_back(
-        {path_of(folder, what.recording), what.recording, what.imu, what.method, "", settings});
+    all.push_back({path_of(folder, what.recording), what.recording, what.imu, what.method, "",
+                   std::make_shared<const Settings>(settings)});
   }
   return all;
 }

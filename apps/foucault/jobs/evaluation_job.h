@@ -1,24 +1,26 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "console.h"
 #include "foucault/evaluation/experiment.h"
+#include "jobs/run_store.h"
 #include "pages/evaluation_page.h"
 #include "settings.h"
 
 namespace foucault::app {
 
-/// One method on one log; settings.outages.shifts_s make a run each.
+/// One method on one log; settings->outages.shifts_s make a run each.
 struct EvaluationCase {
-  std::string log;        ///< rawlog
-  std::string recording;  ///< its name in tables
-  std::string imu;        ///< recordings of one IMU are joined in tables
-  std::string method;     ///< see methods.h
-  std::string label;      ///< of the method in tables; empty: its name
-  Settings settings;
+  std::string log;                           ///< rawlog
+  std::string recording;                     ///< its name in tables
+  std::string imu;                           ///< recordings of one IMU are joined in tables
+  std::string method;                        ///< see methods.h
+  std::string label;                         ///< of the method in tables; empty: its name
+  std::shared_ptr<const Settings> settings;  ///< one for many cases, which may be a million
 };
 
 /// Every method on every log with the same settings; recordings are named by their files.
@@ -37,11 +39,13 @@ struct Ablation {
 /// calibration, and without both. Throws UsageError if there is nothing to switch off.
 Ablation with_parts_off(const std::vector<EvaluationCase>& cases);
 
-/// The runs of a case, one a shift. Throws UsageError for settings that make no sense.
+/// The run of a case with one of its shifts. Throws UsageError for settings that make no sense.
+evaluation::ExperimentRun experiment_run(const EvaluationCase& evaluation_case, double shift_s);
+/// One a shift.
 std::vector<evaluation::ExperimentRun> experiment_runs(const EvaluationCase& evaluation_case);
 
-/// Opens each log once: what is missing or no rawlog shows before hours are spent on others.
-void check_logs(const std::vector<std::string>& logs, const Settings& settings);
+/// Opens a log: what is missing or no rawlog shows before hours are spent on others.
+void check_log(const std::string& log, const Settings& settings);
 
 struct Evaluation {
   std::vector<evaluation::ExperimentResult> results;
@@ -49,15 +53,15 @@ struct Evaluation {
   std::vector<std::string> failures;  ///< of methods, a line each; they have no results
 };
 
-/// Runs all cases on `threads` threads; results in the order of the cases, then of the shifts.
-/// Says what users should know about the data. Throws DataError, also if every method failed,
-/// UsageError, Interrupted.
-Evaluation evaluate_what_is_there(const std::vector<EvaluationCase>& cases, int threads,
+/// Runs all cases; results in the order of the cases, then of the shifts. A worker has none: its
+/// share of the runs is in the store. Says what users should know about the data. Throws DataError,
+/// also if every method failed, UsageError, Interrupted.
+Evaluation evaluate_what_is_there(const std::vector<EvaluationCase>& cases, RunStore& store,
                                   Console& console);
 
 /// The same with a DataError for a log that breaks off and a method that fails.
 std::vector<evaluation::ExperimentResult> evaluate(const std::vector<EvaluationCase>& cases,
-                                                   int threads, Console& console);
+                                                   RunStore& store, Console& console);
 
 /// The files of an evaluation, and its report if it is asked for.
 void write_evaluation(const evaluation::EvaluationSummary& summary, const EvaluationLabels& labels,

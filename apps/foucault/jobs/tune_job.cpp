@@ -2,13 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
-#include <system_error>
+#include <map>
+#include <memory>
+#include <mutex>
 
 #include "foucault/core/error.h"
 #include "foucault/page/report_page.h"
 #include "foucault/tuning/tuning_output.h"
-#include "interrupt.h"
 #include "jobs/evaluation_job.h"
 #include "jobs/survey.h"
 #include "methods.h"
@@ -33,41 +33,68 @@ std::string base_text(const TuneJob& job) {
   return dump_config(base);
 }
 
-void make_folder(const std::string& out) {
-  if (out.empty()) throw UsageError("--out is empty; name a folder for the results");
-  std::error_code error;
-  std::filesystem::create_directories(out, error);
-  if (error) {
-    throw DataError(
-        fmt::format("cannot write to '{}': {}; give another --out", out, error.message()));
-  }
-}
-
 void check(const TuneJob& job) {
   for (const EvaluationCase& c : cross(job.logs, job.config.methods, job.base)) experiment_runs(c);
-  check_logs(job.logs, job.base);
 }
 
-tuning::SearchPlan plan(const TuneJob& job, Console& console) {
-  const auto surveyor = std::make_shared<Surveyor>(console);
-  const auto runs = [&job, surveyor](const std::string& log, const std::string& method,
-                                     const tuning::GridPoint& point) {
-    // What the recording shows is asked once, at the base: points are compared with each other. The
-    // noise is what is tuned.
+/// Makes the runs of points, from any thread.
+class PointMaker {
+ public:
+  PointMaker(const TuneJob& job, RunStore& store, Console& console)
+      : job_(job), store_(store), surveyor_(console) {
+    const std::vector<std::string> contents = store.contents(
+        job.logs, [&](const std::string& log) { check_log(log, job.base); }, console);
+    for (std::size_t i = 0; i < job.logs.size(); ++i) contents_[job.logs[i]] = contents[i];
+  }
+
+  std::vector<evaluation::ExperimentRun> runs(const std::string& log, const std::string& method,
+                                              const tuning::GridPoint& point) {
+    const auto settings = std::make_shared<const Settings>(completed(log, point));
+    const std::string text = store::hex(store::key_of(settings_text(*settings)));
+    std::vector<evaluation::ExperimentRun> runs =
+        experiment_runs({log, log, settings->imu.preset, method, "", settings});
+    for (evaluation::ExperimentRun& run : runs) {
+      run.with_track = false;
+      run.depends_on = run_text(store_, contents_.at(log), method, run.shift_s, false, text);
+    }
+    return runs;
+  }
+
+ private:
+  /// What the recording shows is asked once, at the base: points are compared with each other. The
+  /// noise is what is tuned.
+  Settings completed(const std::string& log, const tuning::GridPoint& point) {
     const auto as_told = [&log](Settings settings) {
       settings.calibrate.noise = "off";
       return settings_for(log, settings);
     };
-    surveyor->complete(log, as_told(job.base));
-    const Settings settings = surveyor->complete(log, as_told(job.at(point)));
-    return experiment_runs({log, log, settings.imu.preset, method, "", settings});
+    const std::lock_guard<std::mutex> lock(mutex_);
+    surveyor_.complete(log, as_told(job_.base));
+    return surveyor_.complete(log, as_told(job_.at(point)));
+  }
+
+  const TuneJob& job_;
+  RunStore& store_;
+  std::mutex mutex_;
+  Surveyor surveyor_;
+  std::map<std::string, std::string> contents_;
+};
+
+tuning::SearchPlan plan(const TuneJob& job, RunStore& store, Console& console) {
+  const auto maker = std::make_shared<PointMaker>(job, store, console);
+  const auto runs = [maker](const std::string& log, const std::string& method,
+                            const tuning::GridPoint& point) {
+    return maker->runs(log, method, point);
   };
-  return {job.config,
-          job.logs,
-          job.base.outages.shifts_s.size(),
-          runs,
-          job.threads,
+  return {job.config, job.logs, job.base.outages.shifts_s.size(), runs,
           [&console](const std::string& method) { return console.progress_of(method); }};
+}
+
+std::size_t runs_of(const std::vector<tuning::MethodTuning>& tunings,
+                    const tuning::SearchPlan& plan) {
+  std::size_t points = 0;
+  for (const tuning::MethodTuning& tuning : tunings) points += tuning.scores.size();
+  return points * plan.logs.size() * plan.shifts;
 }
 
 }  // namespace
@@ -87,34 +114,25 @@ void load_grid_text(const std::string& yaml, const std::string& origin,
   job.config = tuning::load_tune_config_text(yaml, origin, assignments, tunable(job.base));
 }
 
-std::vector<tuning::MethodTuning> search(const TuneJob& job, Console& console) {
+std::vector<tuning::MethodTuning> search(const TuneJob& job, RunStore& store, Console& console) {
   check(job);
-  make_folder(job.out);
-  const tuning::SearchPlan search_plan = plan(job, console);
-  const std::string path = (std::filesystem::path(job.out) / "points.csv").string();
-  tuning::PointStore store = tuning::open_points(path, search_plan, base_text(job), kVersion);
-  if (store.size() > 0) {
-    console.say(fmt::format("{:<10} {} points are in {} already", "resumed", store.size(), path));
-  }
+  const tuning::SearchPlan search_plan = plan(job, store, console);
   std::vector<tuning::MethodTuning> tunings;
-  try {
-    for (const std::string& method : job.config.methods) {
-      tunings.push_back(tuning::search(search_plan, method, store));
-    }
-  } catch (const Interrupted&) {
-    console.warn(fmt::format("{} finished points are kept in {}; the same command goes on there",
-                             store.size(), path));
-    throw;
+  for (const std::string& method : job.config.methods) {
+    tunings.push_back(tuning::search(search_plan, method, store.runs()));
   }
-  if (!std::filesystem::exists(path)) {
-    console.warn(fmt::format("{} was removed meanwhile; finished points are not kept", path));
-  }
+  store.report(runs_of(tunings, search_plan), console);
   return tunings;
 }
 
-std::vector<std::string> tune(const TuneJob& job, Console& console) {
-  const tuning::TuningResult result{job.config, search(job, console), base_text(job), kVersion};
+std::vector<std::string> tune(const TuneJob& job, RunStore& store, Console& console) {
+  if (store.is_worker()) {
+    search(job, store, console);
+    return {};
+  }
   OutputDirectory directory(job.out);
+  const tuning::TuningResult result{job.config, search(job, store, console), base_text(job),
+                                    kVersion};
   const auto config_at = [&job](const tuning::GridPoint& point) {
     Settings settings = job.at(point);
     return dump_config(settings);

@@ -5,6 +5,7 @@
 
 #include "console.h"
 #include "foucault/tuning/search.h"
+#include "jobs/run_store.h"
 #include "settings.h"
 
 namespace foucault::app {
@@ -14,7 +15,6 @@ struct TuneJob {
   Settings base;
   tuning::TuneConfig config;
   std::string out;  ///< folder
-  int threads = 1;
   bool report = true;
   std::string command_line;
 
@@ -28,13 +28,14 @@ void load_grid(const std::string& path, const std::vector<std::string>& assignme
 void load_grid_text(const std::string& yaml, const std::string& origin,
                     const std::vector<std::string>& assignments, TuneJob& job);
 
-/// Searches the grid for each method. Every finished point is kept in out/points.csv at once: the
-/// same command goes on from there after a kill, and ends with the same result.
+/// Searches the grid for each method. Every finished run is kept in the store at once: the same
+/// command goes on from there after a kill, and ends with the same result.
 /// Throws DataError, UsageError, Interrupted.
-std::vector<tuning::MethodTuning> search(const TuneJob& job, Console& console);
+std::vector<tuning::MethodTuning> search(const TuneJob& job, RunStore& store, Console& console);
 
-/// Searches and writes best.yaml (best-METHOD.yaml for several), results.csv, metrics.json,
-/// heatmaps/ and report/ to job.out: all of it or nothing. Returns what to tell the user.
-std::vector<std::string> tune(const TuneJob& job, Console& console);
+/// Searches and writes best.yaml (best-METHOD.yaml for several), results.csv, points.csv,
+/// metrics.json, heatmaps/ and report/ to job.out: all of it or nothing; a worker writes nothing.
+/// Returns what to tell the user.
+std::vector<std::string> tune(const TuneJob& job, RunStore& store, Console& console);
 
 }  // namespace foucault::app

@@ -73,22 +73,14 @@ std::vector<DriftRms> drift_rms(const std::vector<evaluation::MethodOutages>& ro
   return rms;
 }
 
-/// The first shift of each recording (of each IMU's first recording, if there are several IMUs).
 std::vector<ComparedRuns> shown_runs(const evaluation::EvaluationSummary& summary) {
-  const bool by_imu = summary.row_header() == "IMU";
+  ShownRuns places(summary.row_header() == "IMU");
   std::vector<ComparedRuns> shown;
-  const auto of_same = [&](const evaluation::ExperimentResult& r) {
-    return std::find_if(shown.begin(), shown.end(), [&](const ComparedRuns& runs) {
-      return runs[0]->imu == r.imu && (by_imu || runs[0]->recording == r.recording);
-    });
-  };
   for (const evaluation::ExperimentResult& r : summary.results()) {
-    const auto found = of_same(r);
-    if (found == shown.end()) {
-      if (shown.size() < kMostRecordings) shown.push_back({&r});
-    } else if (found->front()->recording == r.recording && found->front()->shift_s == r.shift_s) {
-      found->push_back(&r);
-    }
+    const std::optional<std::size_t> place = places.place(r);
+    if (!place) continue;
+    if (*place == shown.size()) shown.emplace_back();
+    shown[*place].push_back(&r);
   }
   return shown;
 }
@@ -387,6 +379,18 @@ content::EvaluationReport report_of(const evaluation::EvaluationSummary& summary
 }
 
 }  // namespace
+
+std::optional<std::size_t> ShownRuns::place(const evaluation::ExperimentResult& run) {
+  for (std::size_t i = 0; i < firsts_.size(); ++i) {
+    const First& first = firsts_[i];
+    if (first.imu != run.imu || (!by_imu_ && first.recording != run.recording)) continue;
+    const bool is_compared = first.recording == run.recording && first.shift_s == run.shift_s;
+    return is_compared ? std::optional(i) : std::nullopt;
+  }
+  if (firsts_.size() == kMostRecordings) return std::nullopt;
+  firsts_.push_back({run.recording, run.imu, run.shift_s});
+  return firsts_.size() - 1;
+}
 
 page::Table report_table(const evaluation::TextTable& table, const std::string& note) {
   return {table.title, note, false, table.header, table.rows};

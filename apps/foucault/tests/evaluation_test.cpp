@@ -45,7 +45,8 @@ class EvaluationTest : public testing::Test {
 
   static std::vector<evaluation::ExperimentResult> results(int threads) {
     Console console(true);
-    return evaluate(cross({log()}, {"ekf", "rough"}, settings()), threads, console);
+    RunStore store(threads);
+    return evaluate(cross({log()}, {"ekf", "rough"}, settings()), store, console);
   }
 
   static test::TestFolder* folder_;
@@ -114,8 +115,9 @@ TEST_F(EvaluationTest, DriftByDistanceOfATripThatGoesFar) {
   far.outages.first_s = 100;
   far.outages.period_s = 30;
   far.outages.shifts_s = {0, 15};
+  RunStore store(2);
   const evaluation::EvaluationSummary summary(
-      evaluate(cross({folder / "flight.rawlog"}, {"ekf", "full"}, far), 2, console));
+      evaluate(cross({folder / "flight.rawlog"}, {"ekf", "full"}, far), store, console));
 
   ASSERT_EQ(summary.distances().size(), 1u);
   const evaluation::DistanceProfile& profile = summary.distances()[0];
@@ -163,8 +165,9 @@ TEST_F(EvaluationTest, ReportHoldsAllFigures) {
 TEST_F(EvaluationTest, AShortLogIsToldWhatToChange) {
   Settings settings;  // the first outage ends after 570 s
   Console console(true);
+  RunStore store(1);
   try {
-    evaluate(cross({log()}, {"ekf"}, settings), 1, console);
+    evaluate(cross({log()}, {"ekf"}, settings), store, console);
     FAIL();
   } catch (const DataError& error) {
     EXPECT_THAT(error.what(), HasSubstr("trip: no outage fits into its 300 s"));
@@ -201,10 +204,10 @@ TEST(WithPartsOff, EachAidAllOfThemCalibrationAndBoth) {
   EXPECT_EQ(ablation.names[1].label(), "ekf without zero_velocity");
   EXPECT_EQ(ablation.cases[0].label, "");
   EXPECT_EQ(ablation.cases[1].label, ablation.names[1].label());
-  EXPECT_THAT(ablation.cases[1].settings.aids.in_use(), ElementsAre("wheel_speed"));
-  EXPECT_THAT(ablation.cases[3].settings.aids.in_use(), testing::IsEmpty());
-  EXPECT_GT(ablation.cases[3].settings.calibrate.layout().slow_size(), 0);
-  const Settings& calibration_off = ablation.cases[4].settings;
+  EXPECT_THAT(ablation.cases[1].settings->aids.in_use(), ElementsAre("wheel_speed"));
+  EXPECT_THAT(ablation.cases[3].settings->aids.in_use(), testing::IsEmpty());
+  EXPECT_GT(ablation.cases[3].settings->calibrate.layout().slow_size(), 0);
+  const Settings& calibration_off = *ablation.cases[4].settings;
   EXPECT_EQ(calibration_off.calibrate.layout().slow_size(), 0);
   EXPECT_EQ(calibration_off.aids.in_use().size(), 2u);
   EXPECT_EQ(ablation.names[5].without, "aids and calibration");
@@ -214,20 +217,22 @@ TEST(WithPartsOff, EachAidAllOfThemCalibrationAndBoth) {
 }
 
 TEST(ExperimentRuns, OneAShift) {
-  EvaluationCase c{"a.rawlog", "a", "ADIS16465", "ekf", "tuned ekf", Settings()};
+  EvaluationCase c{"a.rawlog", "a", "ADIS16465", "ekf", "tuned ekf", std::make_shared<Settings>()};
   const std::vector<evaluation::ExperimentRun> runs = experiment_runs(c);
   ASSERT_EQ(runs.size(), 2u);
   EXPECT_EQ(runs[1].method, "tuned ekf");
   EXPECT_EQ(runs[1].shift_s, 75);
   EXPECT_EQ(*runs[1].schedule.first_end_s(), 645);
-  c.settings.outages.shifts_s.clear();
+  Settings without;
+  without.outages.shifts_s.clear();
+  c.settings = std::make_shared<Settings>(without);
   EXPECT_THROW(experiment_runs(c), UsageError);
-  c = {"a.rawlog", "a", "ADIS16465", "kalman", "", Settings()};
+  c = {"a.rawlog", "a", "ADIS16465", "kalman", "", std::make_shared<Settings>()};
   EXPECT_THROW(experiment_runs(c), UsageError);
 }
 
 TEST(ExperimentRuns, ErrorsOfTheEstimatorNameTheRecording) {
-  const EvaluationCase c{"a.rawlog", "a", "ADIS16465", "ekf", "", Settings()};
+  const EvaluationCase c{"a.rawlog", "a", "ADIS16465", "ekf", "", std::make_shared<Settings>()};
   state::Sink sink;
   const std::unique_ptr<state::Estimator> estimator =
       experiment_runs(c)[0].make_estimator({}, sink);

@@ -19,12 +19,12 @@ TEST(DemoJob, CasesHaveTheSettingsOfTheirImu) {
       evaluation_cases(laboratory::cases_as_simulated(experiment), "x");
   ASSERT_EQ(plain.size(), 16u);
   EXPECT_EQ(plain[0].log, "x/ICM20602-60s.rawlog");
-  EXPECT_EQ(plain[0].settings.imu.preset, "ICM20602");
-  EXPECT_FALSE(plain[0].settings.imu.arw_deg_sqrt_h.has_value());
-  EXPECT_EQ(plain[0].settings.gnss.gate_false_alarm, 0);
+  EXPECT_EQ(plain[0].settings->imu.preset, "ICM20602");
+  EXPECT_FALSE(plain[0].settings->imu.arw_deg_sqrt_h.has_value());
+  EXPECT_EQ(plain[0].settings->gnss.gate_false_alarm, 0);
   const std::vector<EvaluationCase> tuned =
       evaluation_cases(laboratory::cases_tuned(experiment), "x");
-  EXPECT_EQ(tuned[0].settings.imu.arw_deg_sqrt_h, 0.25);
+  EXPECT_EQ(tuned[0].settings->imu.arw_deg_sqrt_h, 0.25);
 }
 
 TEST(LaboratoryJob, AReturnOnARecording) {

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "foucault/core/error.h"
@@ -65,7 +66,6 @@ class TuneTest : public testing::Test {
     job.logs = {*folder_ / "trip.rawlog"};
     load_grid_text(yaml, "grid.yaml", {}, job);
     job.out = out;
-    job.threads = 2;
     job.report = false;
     return job;
   }
@@ -75,31 +75,38 @@ class TuneTest : public testing::Test {
 
 test::TestFolder* TuneTest::folder_ = nullptr;
 
+/// Half of the runs are in the store already.
 TEST_F(TuneTest, AKilledSearchEndsWithTheSameResult) {
   const test::TestFolder out;
   Console console(true);
-  tune(job(out / "a"), console);
-  const std::string points = out.text("a/points.csv");
+  RunStore whole({out / "store", "", false}, out / "a", 1);
+  tune(job(out / "a"), whole, console);
+  EXPECT_EQ(whole.runs().computed(), 6u);
   const std::string results = out.text("a/results.csv");
   EXPECT_EQ(std::count(results.begin(), results.end(), '\n'), 1 + 6);
 
-  std::filesystem::create_directory(out / "b");
-  out.write("b/points.csv", points.substr(0, points.size() - 10));  // in the middle of a line
-  TuneJob resumed = job(out / "b");
-  resumed.threads = 1;
-  tune(resumed, console);
+  int kept = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(out / "store")) {
+    if (entry.is_regular_file() && ++kept % 2 == 0) std::filesystem::remove(entry.path());
+  }
+  RunStore half({out / "store", "", false}, out / "b", 2);
+  tune(job(out / "b"), half, console);
+  EXPECT_GT(half.runs().computed(), 0u);
+  EXPECT_LT(half.runs().computed(), 6u);
   for (const char* name : {"results.csv", "metrics.json", "best.yaml"}) {
     EXPECT_EQ(out.text(std::string("b/") + name), out.text(std::string("a/") + name)) << name;
   }
-  const std::string kept = points.substr(0, points.rfind('\n', points.size() - 2));
-  EXPECT_EQ(out.text("b/points.csv").substr(0, kept.size()), kept);
+  RunStore merge({out / "store", "", true}, out / "c", 2);
+  tune(job(out / "c"), merge, console);
+  EXPECT_EQ(out.text("c/points.csv"), out.text("b/points.csv")) << "times of the processor, too";
 }
 
 TEST_F(TuneTest, WritesTheBestOfThePoints) {
   const test::TestFolder out;
   Console console(true);
-  const std::vector<MethodTuning> tunings = search(job(out / "a"), console);
-  tune(job(out / "a"), console);
+  RunStore store(2);
+  const std::vector<MethodTuning> tunings = search(job(out / "a"), store, console);
+  tune(job(out / "a"), store, console);
   ASSERT_EQ(tunings.size(), 1u);
   for (const auto& [point, score] : tunings[0].scores) {
     EXPECT_EQ(score.outages, 3);
@@ -114,34 +121,33 @@ TEST_F(TuneTest, WritesTheBestOfThePoints) {
   EXPECT_EQ(out.lines("a/heatmaps/ekf_imu_arw_deg_sqrt_h_imu_gyro_bias_deg_h.csv").size(), 7u);
 }
 
-TEST_F(TuneTest, RefusesPointsOfAnotherSearch) {
+/// Runs are found by what they depend on: a wider grid computes what is new, another objective
+/// nothing, other outages everything.
+TEST_F(TuneTest, AnotherSearchFindsWhatItShares) {
   const test::TestFolder out;
-  Console console(true);
-  search(job(out / "a"), console);
-  const auto refused = [&](const std::string& yaml) -> std::string {
-    try {
-      search(job(out / "a", yaml), console);
-    } catch (const DataError& error) {
-      return error.what();
-    }
-    return "";
+  const auto computed = [&](const std::string& yaml) {
+    Console console(true);
+    RunStore store({out / "store", "", false}, out / "a", 2);
+    search(job(out / "a", yaml), store, console);
+    return store.runs().computed();
   };
-  EXPECT_EQ(refused(kGrid), "");
-  EXPECT_THAT(refused(with("0.15]", "0.15, 0.3]")), HasSubstr("with other grid"));
-  EXPECT_THAT(refused(with("length_s: 20", "length_s: 15")), HasSubstr("other base configuration"));
-  // The points stay good for another objective.
-  EXPECT_EQ(refused(with("method: ekf", "method: ekf\nobjective: vertical")), "");
+  EXPECT_EQ(computed(kGrid), 6u);
+  EXPECT_EQ(computed(with("0.15]", "0.15, 0.3]")), 3u);
+  EXPECT_EQ(computed(with("method: ekf", "method: ekf\nobjective: vertical")), 0u);
+  EXPECT_EQ(computed(with("length_s: 20", "length_s: 15")), 6u);
+  EXPECT_EQ(computed(with("shifts_s: [0]", "shifts_s: [0, 20]")), 6u) << "the second shift";
 }
 
 TEST_F(TuneTest, CoarseToFineFindsTheBestOfTheGrid) {
   const test::TestFolder out;
   Console console(true);
+  RunStore store(2);
   const std::string grid = with("{from: 2, to: 200, steps: 3, scale: log}",
                                 "{from: 0.5, to: 500, steps: 13, scale: log}");
   const std::string one = std::string(grid).replace(grid.find("[0.6, 0.15]"), 11, "[0.15]");
-  const std::vector<MethodTuning> full = search(job(out / "a", one), console);
+  const std::vector<MethodTuning> full = search(job(out / "a", one), store, console);
   const std::vector<MethodTuning> fast =
-      search(job(out / "b", one + "search: coarse_to_fine\n"), console);
+      search(job(out / "b", one + "search: coarse_to_fine\n"), store, console);
   EXPECT_EQ(fast[0].search.best, full[0].search.best);
   EXPECT_LT(fast[0].search.evaluated.size(), full[0].search.evaluated.size());
 }
@@ -149,8 +155,9 @@ TEST_F(TuneTest, CoarseToFineFindsTheBestOfTheGrid) {
 TEST_F(TuneTest, ALogWithoutOutagesIsAnError) {
   const test::TestFolder out;
   Console console(true);
+  RunStore store(2);
   try {
-    search(job(out / "a", with("first_s: 100", "first_s: 900")), console);
+    search(job(out / "a", with("first_s: 100", "first_s: 900")), store, console);
     FAIL();
   } catch (const DataError& error) {
     EXPECT_THAT(error.what(), HasSubstr("no outage fits"));

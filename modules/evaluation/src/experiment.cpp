@@ -9,9 +9,9 @@
 #include <utility>
 
 #include "count_distinct.h"
+#include "experiment_record.h"
 #include "foucault/core/error.h"
 #include "foucault/core/time.h"
-#include "foucault/evaluation/task_pool.h"
 
 namespace foucault::evaluation {
 namespace {
@@ -48,22 +48,6 @@ class RunWatcher : public OutageRunObserver {
   ErrorTrack by_fixes_;
   std::vector<state::Notice> notices_;
 };
-
-/// A recording without an outage in the earliest of its schedules has none in the others.
-std::vector<bool> earliest_of_recording(const std::vector<ExperimentRun>& runs) {
-  std::map<std::pair<std::string, std::string>, double> earliest;
-  for (const ExperimentRun& run : runs) {
-    const double end_s = run.schedule.first_end_s().value_or(0);
-    const auto [at, is_new] = earliest.try_emplace({run.imu, run.recording}, end_s);
-    if (!is_new) at->second = std::min(at->second, end_s);
-  }
-  std::vector<bool> flags;
-  for (const ExperimentRun& run : runs) {
-    const double end_s = run.schedule.first_end_s().value_or(0);
-    flags.push_back(end_s <= earliest.at({run.imu, run.recording}));
-  }
-  return flags;
-}
 
 const std::string& group_name(const ExperimentResult& result, Grouping grouping) {
   static const std::string all = "all recordings";
@@ -105,7 +89,21 @@ void keep_common(std::vector<MethodOutages>& outages) {
 }
 
 ExperimentResult without_results(const ExperimentRun& run) {
-  return {run.recording, run.imu, run.method, run.shift_s, {}, {}, {}, {}};
+  return {run.recording, run.imu, run.method, run.shift_s, {}, {}, {}, {}, {}};
+}
+
+void require_outage(const ExperimentRun& run, const ExperimentResult& result) {
+  if (!run.needs_outage || !result.failure.empty() || result.run.scheduled > 0) return;
+  const double span_s = seconds_between(result.run.first_fix_ns, result.run.last_fix_ns);
+  throw DataError(fmt::format(
+      "{}: no outage fits into its {:.0f} s of fixes, the first would end after {:.0f} s; lower "
+      "outages.first_s or outages.length_s, or give outages.starts_s",
+      run.recording, span_s, run.schedule.first_end_s().value_or(0)));
+}
+
+store::Record record_of(const ExperimentRun& run, const TaskProgress& progress) {
+  const ExperimentResult result = run_experiment(run, progress);
+  return {content_of(result), result.run.cpu_s};
 }
 
 std::vector<double> maxima(const std::vector<MethodOutages::Entry>& entries,
@@ -123,37 +121,57 @@ ExperimentResult run_experiment(const ExperimentRun& run,
                                 const std::function<void(double)>& progress) {
   RunWatcher watcher(progress);
   ExperimentResult result = without_results(run);
-  result.run =
-      run_with_outages(run.open(), run.schedule, run.make_estimator, run.options, &watcher);
-  result.track = watcher.track(result.run.truth);
+  try {
+    result.run =
+        run_with_outages(run.open(), run.schedule, run.make_estimator, run.options, &watcher);
+  } catch (const EstimatorFailure& failure) {
+    result.failure = failure.what();
+    return result;
+  }
+  if (run.with_track) result.track = watcher.track(result.run.truth);
   result.notices = watcher.notices();
+  if (run.remarks) result.remarks = *run.remarks;
+  require_outage(run, result);
   return result;
 }
 
-void require_outage(const ExperimentRun& run, const OutageRunResult& result) {
-  if (result.scheduled > 0) return;
-  const double span_s = seconds_between(result.first_fix_ns, result.last_fix_ns);
-  throw DataError(fmt::format(
-      "{}: no outage fits into its {:.0f} s of fixes, the first would end after {:.0f} s; lower "
-      "outages.first_s or outages.length_s, or give outages.starts_s",
-      run.recording, span_s, run.schedule.first_end_s().value_or(0)));
+void Experiment::set_batch(const std::function<std::string(std::size_t)>& depends_on) {
+  batch.keys.clear();
+  batch.keys.reserve(size);
+  for (std::size_t i = 0; i < size; ++i) batch.keys.push_back(store::key_of(depends_on(i)));
+  batch.compute = [make = run](std::size_t i, const TaskProgress& progress) {
+    return record_of(make(i), progress);
+  };
+}
+
+Experiment experiment(std::vector<ExperimentRun> runs) {
+  const auto shared = std::make_shared<const std::vector<ExperimentRun>>(std::move(runs));
+  Experiment experiment;
+  experiment.size = shared->size();
+  experiment.run = [shared](std::size_t i) { return (*shared)[i]; };
+  experiment.named = [shared](std::size_t i) { return without_results((*shared)[i]); };
+  experiment.set_batch([&](std::size_t i) { return (*shared)[i].depends_on; });
+  return experiment;
+}
+
+ExperimentResult result_of(const Experiment& experiment, std::size_t index, Executor& executor) {
+  const store::Record record = executor.get(experiment.batch, index);
+  ExperimentResult result = with_content(experiment.named(index), record.content);
+  result.run.cpu_s = record.cpu_s;
+  if (result.run.scheduled == 0) require_outage(experiment.run(index), result);
+  return result;
 }
 
 std::vector<ExperimentResult> run_experiments(const std::vector<ExperimentRun>& runs, int threads,
                                               const std::function<void(double)>& progress) {
-  const std::vector<bool> earliest = earliest_of_recording(runs);
-  std::vector<ExperimentResult> results(runs.size());
-  const auto task = [&](std::size_t i, const TaskProgress& part) {
-    try {
-      results[i] = run_experiment(runs[i], part);
-    } catch (const EstimatorFailure& failure) {
-      results[i] = without_results(runs[i]);
-      results[i].failure = failure.what();
-      return;
-    }
-    if (earliest[i]) require_outage(runs[i], results[i].run);
-  };
-  run_tasks(runs.size(), threads, task, progress);
+  std::vector<ExperimentRun> numbered = runs;
+  for (std::size_t i = 0; i < runs.size(); ++i) numbered[i].depends_on = fmt::format("{}", i);
+  const Experiment all = experiment(std::move(numbered));
+  store::MemoryRecords records;
+  Executor executor(records, {threads, std::nullopt, true});
+  executor.complete(all.batch, progress);
+  std::vector<ExperimentResult> results;
+  for (std::size_t i = 0; i < all.size; ++i) results.push_back(result_of(all, i, executor));
   return results;
 }
 

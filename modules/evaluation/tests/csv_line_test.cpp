@@ -5,12 +5,9 @@
 namespace foucault::evaluation {
 namespace {
 
-TEST(CsvLine, ReadsBackWhatItWrites) {
+TEST(CsvLine, QuotesWhatWouldBreakIt) {
   const std::vector<std::string> cells{"plain", "a,b", "say \"no\"", "", "two\nlines"};
   EXPECT_EQ(csv_line(cells), "plain,\"a,b\",\"say \"\"no\"\"\",,\"two\nlines\"");
-  EXPECT_EQ(split_csv_line(csv_line(cells)), cells);
-  EXPECT_EQ(split_csv_line(""), std::vector<std::string>{""});
-  EXPECT_FALSE(split_csv_line("a,\"b").has_value());
 }
 
 }  // namespace

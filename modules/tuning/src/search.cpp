@@ -2,16 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
-#include <memory>
-#include <mutex>
+#include <utility>
 
 #include "foucault/core/error.h"
 #include "foucault/evaluation/statistics.h"
-#include "foucault/evaluation/task_pool.h"
 
 namespace foucault::tuning {
 namespace {
@@ -27,31 +23,12 @@ struct RunScore {
   std::string error;
 };
 
-class RunProgress : public evaluation::OutageRunObserver {
- public:
-  explicit RunProgress(const evaluation::TaskProgress& progress) : progress_(progress) {}
-  void progress(double part) override { progress_(part); }
-
- private:
-  const evaluation::TaskProgress& progress_;
-};
-
-RunScore score_run(const evaluation::ExperimentRun& run, bool needs_outage,
-                   const evaluation::TaskProgress& progress) {
-  RunProgress observer(progress);
+RunScore score_run(const evaluation::ExperimentResult& result) {
   RunScore score;
-  evaluation::OutageRunResult result;
-  try {
-    result = evaluation::run_with_outages(run.open(), run.schedule, run.make_estimator, run.options,
-                                          &observer);
-  } catch (const DataError& error) {
-    score.error = error.what();
-    return score;
-  }
-  if (needs_outage) evaluation::require_outage(run, result);
-  score.scheduled = result.scheduled;
-  score.cpu_s = result.cpu_s;
-  for (const evaluation::OutageDrift& drift : result.drifts) {
+  score.error = result.remarks.damage.value_or(result.failure);
+  score.scheduled = result.run.scheduled;
+  score.cpu_s = result.run.cpu_s;
+  for (const evaluation::OutageDrift& drift : result.run.drifts) {
     score.horizontal_max.push_back(drift.maximum.horizontal);
     score.vertical_max.push_back(drift.maximum.vertical);
   }
@@ -74,162 +51,111 @@ std::string flaw(const std::vector<RunScore>& runs, std::size_t outages) {
   return fmt::format("nothing to measure in {} of {} outages", missing, scheduled);
 }
 
+/// One line, whatever a message holds: a line of a table is a point.
+std::string one_line(std::string text) {
+  for (char& c : text) c = c == '\n' || c == '\r' ? ' ' : c;
+  return text;
+}
+
 PointScore score_point(const std::vector<RunScore>& runs) {
   std::vector<double> horizontal;
   std::vector<double> vertical;
+  PointScore score;
   for (const RunScore& run : runs) {
     append(horizontal, run.horizontal_max);
     append(vertical, run.vertical_max);
+    score.cpu_s += run.cpu_s;
   }
-  PointScore score;
   score.outages = static_cast<int64_t>(horizontal.size());
-  score.note = flaw(runs, horizontal.size());
+  score.note = one_line(flaw(runs, horizontal.size()));
   const bool valid = score.note.empty() && !horizontal.empty();
   score.horizontal_rms = valid ? evaluation::root_mean_square(horizontal) : kInfinity;
   score.vertical_rms = valid ? evaluation::root_mean_square(vertical) : kInfinity;
   return score;
 }
 
-double cpu_s(const std::vector<RunScore>& runs) {
-  double sum = 0;
-  for (const RunScore& run : runs) sum += run.cpu_s;
-  return sum;
-}
-
-/// Results as cells and back, without loss.
-std::vector<std::string> cells(const PointScore& score, double cpu) {
-  return {fmt::format("{}", score.outages), fmt::format("{}", score.horizontal_rms),
-          fmt::format("{}", score.vertical_rms), fmt::format("{:.3f}", cpu), score.note};
-}
-
-template <class Number>
-Number parsed(const std::string& cell) {
-  Number value{};
-  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-  if (error != std::errc() || end != cell.data() + cell.size()) {
-    throw DataError(fmt::format("points.csv: '{}' is not a number; remove its line", cell));
-  }
-  return value;
-}
-
-PointScore score_of(const std::vector<std::string>& cells) {
-  return {parsed<int64_t>(cells[0]), parsed<double>(cells[1]), parsed<double>(cells[2]), cells[4]};
-}
-
-/// One line, whatever a message holds: a line of the store is a point.
-std::string one_line(std::string text) {
-  for (char& c : text) c = c == '\n' || c == '\r' ? ' ' : c;
-  return text;
-}
-
-/// A point while its runs are under way.
-class OpenPoint {
+/// The runs of points, all those on one log beside each other.
+class PointRuns {
  public:
-  explicit OpenPoint(std::size_t runs) : runs_(runs), open_(runs) {}
+  PointRuns(const SearchPlan& plan, const std::string& method, const std::vector<GridPoint>& points)
+      : plan_(plan), method_(method), points_(points) {}
 
-  /// True if it was the last one.
-  bool put(std::size_t index, RunScore score) {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    runs_[index] = std::move(score);
-    return --open_ == 0;
+  std::size_t size() const { return plan_.logs.size() * points_.size() * plan_.shifts; }
+
+  evaluation::ExperimentRun run(std::size_t index) const {
+    return runs(index / plan_.shifts).at(index % plan_.shifts);
   }
-  const std::vector<RunScore>& runs() const { return runs_; }
+
+  /// The log is the name of the recording.
+  evaluation::ExperimentResult named(std::size_t index) const {
+    evaluation::ExperimentResult result;
+    result.recording = plan_.logs[index / plan_.shifts / points_.size()];
+    return result;
+  }
+
+  /// Of every run.
+  std::vector<std::string> depends_on() const {
+    std::vector<std::string> texts;
+    for (std::size_t i = 0; i < plan_.logs.size() * points_.size(); ++i) {
+      for (evaluation::ExperimentRun& run : runs(i)) texts.push_back(std::move(run.depends_on));
+    }
+    return texts;
+  }
+
+  /// Of a point, in the order of logs and shifts.
+  std::vector<std::size_t> of_point(std::size_t point) const {
+    std::vector<std::size_t> indices;
+    for (std::size_t log = 0; log < plan_.logs.size(); ++log) {
+      for (std::size_t shift = 0; shift < plan_.shifts; ++shift) {
+        indices.push_back((log * points_.size() + point) * plan_.shifts + shift);
+      }
+    }
+    return indices;
+  }
 
  private:
-  std::mutex mutex_;
-  std::vector<RunScore> runs_;
-  std::size_t open_;
+  std::vector<evaluation::ExperimentRun> runs(std::size_t log_and_point) const {
+    return plan_.runs(plan_.logs[log_and_point / points_.size()], method_,
+                      points_[log_and_point % points_.size()]);
+  }
+
+  const SearchPlan& plan_;
+  const std::string& method_;
+  const std::vector<GridPoint>& points_;
 };
 
-std::vector<std::string> key(const SearchPlan& plan, const std::string& method,
-                             const GridPoint& point) {
-  std::vector<std::string> key = plan.config.values(point);
-  key.insert(key.begin(), method);
-  return key;
-}
-
-/// A recording is too short if not even the outages of its least shift fit.
-bool has_least_shift(const evaluation::ExperimentRun& run,
-                     const std::vector<evaluation::ExperimentRun>& runs) {
-  return std::all_of(runs.begin(), runs.end(), [&](const evaluation::ExperimentRun& other) {
-    return run.shift_s <= other.shift_s;
-  });
-}
-
-/// Runs as a task each; the last one of a point puts it into the store.
-void compute(const SearchPlan& plan, const std::string& method,
-             const std::vector<GridPoint>& points, PointStore& store) {
-  const std::size_t runs_of_point = plan.logs.size() * plan.shifts;
-  std::vector<std::unique_ptr<OpenPoint>> open;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    open.push_back(std::make_unique<OpenPoint>(runs_of_point));
-  }
-  const auto task = [&](std::size_t index, const evaluation::TaskProgress& progress) {
-    const std::size_t p = index / runs_of_point;
-    const std::size_t r = index % runs_of_point;
-    const std::vector<evaluation::ExperimentRun> runs =
-        plan.runs(plan.logs[r / plan.shifts], method, points[p]);
-    const evaluation::ExperimentRun& run = runs[r % plan.shifts];
-    if (!open[p]->put(r, score_run(run, has_least_shift(run, runs), progress))) return;
-    PointScore finished = score_point(open[p]->runs());
-    finished.note = one_line(finished.note);
-    store.add(key(plan, method, points[p]), cells(finished, cpu_s(open[p]->runs())));
-  };
-  evaluation::run_tasks(points.size() * runs_of_point, plan.threads, task,
-                        plan.progress_of(method));
-}
-
-/// In the order of `points`; those that are in the store already are not computed again.
+/// In the order of `points`.
 std::vector<PointScore> scores(const SearchPlan& plan, const std::string& method,
-                               const std::vector<GridPoint>& points, PointStore& store) {
-  std::vector<GridPoint> missing;
-  for (const GridPoint& point : points) {
-    if (!store.find(key(plan, method, point))) missing.push_back(point);
-  }
-  compute(plan, method, missing, store);
+                               const std::vector<GridPoint>& points,
+                               evaluation::Executor& executor) {
+  const PointRuns runs(plan, method, points);
+  const std::vector<std::string> texts = runs.depends_on();
+  evaluation::Experiment experiment;
+  experiment.size = runs.size();
+  experiment.run = [&](std::size_t i) { return runs.run(i); };
+  experiment.named = [&](std::size_t i) { return runs.named(i); };
+  experiment.set_batch([&](std::size_t i) { return texts.at(i); });
+  executor.complete(experiment.batch, plan.progress_of(method));
   std::vector<PointScore> scores;
-  for (const GridPoint& point : points) {
-    scores.push_back(score_of(*store.find(key(plan, method, point))));
+  for (std::size_t p = 0; p < points.size(); ++p) {
+    std::vector<RunScore> of_point;
+    for (const std::size_t i : runs.of_point(p)) {
+      of_point.push_back(score_run(evaluation::result_of(experiment, i, executor)));
+    }
+    scores.push_back(score_point(of_point));
   }
   return scores;
 }
 
-std::string grid_text(const ParameterGrid& grid) {
-  std::string text;
-  for (const GridAxis& axis : grid.axes) {
-    text += axis.key + "\n";
-    for (const std::string& value : axis.values) text += "  " + value + "\n";
-  }
-  return text;
-}
-
 }  // namespace
 
-PointStore open_points(const std::string& path, const SearchPlan& plan, const std::string& base,
-                       const std::string& version) {
-  const ParameterGrid& grid = plan.config.grid;
-  std::string logs;
-  for (const std::string& log : plan.logs) logs += hash_file(log);
-  std::vector<std::string> header{"method"};
-  for (const GridAxis& axis : grid.axes) header.push_back(axis.key);
-  const std::size_t keys = header.size();
-  for (const char* name : {"outages", "horizontal_rmse_m", "vertical_rmse_m", "cpu_s", "note"}) {
-    header.push_back(name);
-  }
-  return PointStore(path,
-                    {{"logs", hash_text(logs)},
-                     {"base configuration", hash_text(base)},
-                     {"grid", hash_text(grid_text(grid))},
-                     {"program version", version}},
-                    header, keys);
-}
-
-MethodTuning search(const SearchPlan& plan, const std::string& method, PointStore& store) {
+MethodTuning search(const SearchPlan& plan, const std::string& method,
+                    evaluation::Executor& executor) {
   const TuneOptions& options = plan.config.options;
   MethodTuning tuning;
   tuning.method = method;
   const BatchObjective objective = [&](const std::vector<GridPoint>& points) {
-    const std::vector<PointScore> found = scores(plan, method, points, store);
+    const std::vector<PointScore> found = scores(plan, method, points, executor);
     std::vector<double> values;
     for (std::size_t i = 0; i < points.size(); ++i) {
       tuning.scores[points[i]] = found[i];

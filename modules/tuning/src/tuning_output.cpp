@@ -42,6 +42,28 @@ evaluation::TextTable results_table(const TuningResult& result) {
   return table;
 }
 
+/// What each evaluated point came to, and took.
+evaluation::TextTable points_table(const TuningResult& result) {
+  evaluation::TextTable table;
+  table.header.push_back("method");
+  for (const GridAxis& axis : result.config.grid.axes) table.header.push_back(axis.key);
+  for (const char* name : {"outages", "horizontal_rmse_m", "vertical_rmse_m", "cpu_s", "note"}) {
+    table.header.push_back(name);
+  }
+  for (const MethodTuning& tuning : result.tunings) {
+    for (const auto& [point, score] : tuning.scores) {
+      std::vector<std::string> row = result.config.values(point);
+      row.insert(row.begin(), tuning.method);
+      row.insert(
+          row.end(),
+          {fmt::format("{}", score.outages), fmt::format("{}", score.horizontal_rms),
+           fmt::format("{}", score.vertical_rms), fmt::format("{:.3f}", score.cpu_s), score.note});
+      table.rows.push_back(row);
+    }
+  }
+  return table;
+}
+
 Json tuning_json(const TuneConfig& config, const MethodTuning& tuning) {
   const std::vector<std::string> values = config.values(tuning.search.best);
   Json parameters = Json::object();
@@ -139,6 +161,7 @@ void write_tuning(const TuningResult& result,
                   const std::filesystem::path& folder) {
   const TuneConfig& config = result.config;
   exports::write_text_file(folder / "results.csv", evaluation::to_csv(results_table(result)));
+  exports::write_text_file(folder / "points.csv", evaluation::to_csv(points_table(result)));
   exports::write_text_file(folder / "metrics.json", metrics_text(result));
   for (const MethodTuning& tuning : result.tunings) {
     exports::write_text_file(folder / best_file(config, tuning.method),

@@ -1,9 +1,9 @@
 #include "foucault/tuning/search.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <atomic>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -28,9 +28,7 @@ class SearchTest : public testing::Test {
     plan_.config.grid.axes = {{"a", {"1", "2", "3"}, true}, {"b", {"10", "20"}, true}};
     plan_.logs = {folder_ / "log"};
     plan_.shifts = 2;
-    plan_.threads = 2;
     plan_.runs = [this](const std::string&, const std::string& method, const GridPoint& point) {
-      ++calls_;
       return std::vector<evaluation::ExperimentRun>{run(method, point, 25), run(method, point, 0)};
     };
     plan_.progress_of = [](const std::string&) { return std::function<void(double)>(); };
@@ -47,28 +45,30 @@ class SearchTest : public testing::Test {
     run.recording = "log";
     run.method = method;
     run.shift_s = shift_s;
+    run.needs_outage = shift_s == 0;
+    run.depends_on = fmt::format("{} {} {} {}", method, point[0], point[1], shift_s);
     run.schedule = evaluation::OutageSchedule(outages, shift_s);
     run.open = [this] { return std::make_unique<test::RestSource>(duration_s_, true); };
     const double scale = 1 + std::abs(static_cast<int>(point[0]) - 1) + 2.0 * (point[1] == 0);
     run.make_estimator = [this, scale](const state::Mounting&, state::Sink& sink) {
-      if (fails_above_ < scale) throw DataError("scale\ntoo large");
+      if (fails_above_ < scale) throw evaluation::EstimatorFailure("scale\ntoo large");
       return std::make_unique<test::DriftingEstimator>(sink, scale);
     };
     return run;
   }
-  PointStore store(const std::string& version = "1") const {
-    return open_points(folder_ / "points.csv", plan_, "base: {}", version);
-  }
-  MethodTuning found() const {
-    PointStore points = store();
-    return search(plan_, "ekf", points);
+  MethodTuning found(const evaluation::Executor::Options& options = {2, std::nullopt, true}) {
+    evaluation::Executor executor(records_, options);
+    const MethodTuning tuning = search(plan_, "ekf", executor);
+    computed_ = executor.computed();
+    return tuning;
   }
 
   test::TestFolder folder_;
   SearchPlan plan_;
   double duration_s_ = 275;
   double fails_above_ = 1e9;
-  mutable std::atomic<int> calls_{0};
+  store::MemoryRecords records_;
+  std::size_t computed_ = 0;
 };
 
 TEST_F(SearchTest, FindsTheBestPoint) {
@@ -82,22 +82,37 @@ TEST_F(SearchTest, FindsTheBestPoint) {
   EXPECT_EQ(found().search.best, tuning.search.best);
 }
 
-TEST_F(SearchTest, FinishedPointsAreNotComputedAgain) {
+TEST_F(SearchTest, FinishedRunsAreNotComputedAgain) {
   const MethodTuning first = found();
-  const int calls = calls_;
+  EXPECT_EQ(computed_, 6u * 2);
   const MethodTuning again = found();
-  EXPECT_EQ(calls_, calls);
+  EXPECT_EQ(computed_, 0u);
   EXPECT_EQ(again.best().horizontal_rms, first.best().horizontal_rms);
-  EXPECT_THROW(store("2"), DataError) << "of another program";
-  folder_.write("points.csv",
-                std::string(folder_.text("points.csv"))
-                    .replace(folder_.text("points.csv").rfind("ekf,3,20,6"), 10, "ekf,3,20,x"));
-  EXPECT_THROW(found(), DataError);
+  EXPECT_EQ(again.best().cpu_s, first.best().cpu_s) << "what it took when it was computed";
+}
+
+TEST_F(SearchTest, WhoHasAShareComesToTheSameEnd) {
+  plan_.config.options.search = "coarse_to_fine";
+  const MethodTuning tuning = found({1, store::Shard{1, 3}, true});
+  EXPECT_GT(computed_, 0u) << "nobody else was there, so it did all of it";
+  EXPECT_EQ(tuning.search.best, found().search.best);
+  EXPECT_EQ(computed_, 0u);
+  EXPECT_NO_THROW(found({1, std::nullopt, false}));
+}
+
+TEST_F(SearchTest, SaysHowManyRunsAreMissing) {
+  try {
+    found({1, std::nullopt, false});
+    FAIL();
+  } catch (const store::StoreError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("12 of 12 runs are missing"));
+  }
 }
 
 TEST_F(SearchTest, APointThatFailsSaysWhy) {
   fails_above_ = 2;
   const MethodTuning tuning = found();
+  EXPECT_EQ(tuning.scores.size(), 6u);
   EXPECT_EQ(tuning.scores.at({0, 0}).note, "scale too large");
   EXPECT_TRUE(std::isinf(tuning.scores.at({0, 0}).horizontal_rms));
   EXPECT_THAT(tuning.search.best, ElementsAre(1, 1));
@@ -130,6 +145,7 @@ TEST_F(SearchTest, WritesAndSaysWhatItFound) {
   EXPECT_EQ(json["vertical_weight"], 1);
   EXPECT_EQ(folder_.text("best.yaml"), "1");
   EXPECT_EQ(folder_.lines("results.csv").size(), 7u);
+  EXPECT_EQ(folder_.lines("points.csv").size(), 7u);
   EXPECT_THAT(folder_.text("results.csv"), HasSubstr("ekf,1,10,0,,,,0,scale too large"));
   EXPECT_EQ(folder_.lines("heatmaps/ekf_a_b.csv").size(), 7u);
   EXPECT_THAT(tuning_lines(result, "out").back(), HasSubstr("--config out/best.yaml --method ekf"));

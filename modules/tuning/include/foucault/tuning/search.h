@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "foucault/evaluation/experiment.h"
-#include "foucault/tuning/point_store.h"
 #include "foucault/tuning/tune_config.h"
 
 /// A search over recordings. It knows estimators and recordings by a factory of runs alone.
@@ -16,11 +15,11 @@ struct SearchPlan {
   TuneConfig config;
   std::vector<std::string> logs;
   std::size_t shifts = 1;  ///< of the outages: as many runs a log
-  /// The runs of a method on a log with the configuration of a point, one a shift.
+  /// The runs of a method on a log with the configuration of a point, one a shift, with all that
+  /// they depend on, and the log for the name of the recording; from any thread.
   std::function<std::vector<evaluation::ExperimentRun>(
       const std::string& log, const std::string& method, const GridPoint& point)>
       runs;
-  int threads = 1;
   /// Takes the part done of a method.
   std::function<std::function<void(double)>(const std::string& method)> progress_of;
 };
@@ -30,6 +29,7 @@ struct PointScore {
   int64_t outages = 0;
   double horizontal_rms = 0;  ///< of the per-outage maximum [m]; infinite if an outage is missing
   double vertical_rms = 0;    ///< [m]
+  double cpu_s = 0;           ///< of all runs
   std::string note;           ///< why there is no drift; empty: there is one
 };
 
@@ -42,15 +42,11 @@ struct MethodTuning {
   const PointScore& best() const { return scores.at(search.best); }
 };
 
-/// The file that keeps every finished point; a search goes on from what is in it. It belongs to
-/// these logs, grid, base (YAML) and version; with another objective or way of searching the points
-/// stay of use. Throws DataError as PointStore does.
-PointStore open_points(const std::string& path, const SearchPlan& plan, const std::string& base,
-                       const std::string& version);
-
-/// Searches the grid for a method, points in parallel. A point of which a run fails has a note and
-/// infinite drifts. Throws DataError if no point gives a drift or no outage fits into a log, and
-/// what progress throws.
-MethodTuning search(const SearchPlan& plan, const std::string& method, PointStore& store);
+/// Searches the grid for a method, runs in parallel; those that are in the store of the executor
+/// are not computed again. Every worker that searches takes the same steps. A point of which a run
+/// fails has a note and infinite drifts. Throws DataError if no point gives a drift or no outage
+/// fits into a log, and what executor and progress throw.
+MethodTuning search(const SearchPlan& plan, const std::string& method,
+                    evaluation::Executor& executor);
 
 }  // namespace foucault::tuning

@@ -35,9 +35,9 @@ evaluation::TextTable best_table(const TuningResult& result);
 /// Where a wider grid might hold something better.
 std::vector<std::string> edge_lines(const TuningResult& result);
 
-/// best.yaml (best-METHOD.yaml for several methods), results.csv, metrics.json and
-/// heatmaps/METHOD_X_Y.csv for each pair of parameters. `config_at` gives the configuration of a
-/// point as YAML.
+/// best.yaml (best-METHOD.yaml for several methods), results.csv, points.csv (with the times of the
+/// processor), metrics.json and heatmaps/METHOD_X_Y.csv for each pair of parameters. `config_at`
+/// gives the configuration of a point as YAML.
 void write_tuning(const TuningResult& result,
                   const std::function<std::string(const GridPoint&)>& config_at,
                   const std::filesystem::path& folder);
