@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
+#include "foucault/core/constants.h"
 #include "foucault/core/error.h"
 #include "foucault/diagnosis/fix_judge.h"
 #include "foucault/export/json_object.h"

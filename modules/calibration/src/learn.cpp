@@ -208,8 +208,13 @@ std::vector<LearnedAxis> learned_axes(const LearnOptions& options, const NoiseMo
     const NoiseAxis& axis = options.axes[i];
     const auto row = static_cast<Eigen::Index>(i);
     const double sigma = std::sqrt(covariance(row, row));
-    out.push_back(
-        {axis, axis.value(told), axis.value(found), sigma, is_told(sigma * sigma, options)});
+    out.push_back({axis,
+                   axis.value(told),
+                   axis.value(found),
+                   sigma,
+                   is_told(sigma * sigma, options),
+                   {},
+                   {}});
   }
   return out;
 }
