@@ -13,7 +13,10 @@ build_packages=(
   libbz2-dev liblz4-dev libzstd-dev libsqlite3-dev # recordings of ROS 1 and 2
   fonts-dejavu-core
 )
-test_packages=(libgtest-dev libgmock-dev libgeographiclib-dev)
+test_packages=(
+  libgtest-dev libgmock-dev libgeographiclib-dev
+  chromium python3 # reports as readers see them
+)
 
 fail() {
   echo "setup: $*" >&2

@@ -3,8 +3,11 @@
 #include <mrpt/obs/gnss_messages_novatel.h>
 
 #include <algorithm>
+#include <cmath>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -93,8 +96,8 @@ TEST_F(Report, ShowsAidsAndCalibrationWhereThereAreAny) {
               testing::AllOf(HasSubstr("Antenna, down"), Not(HasSubstr("Mounting, heading")),
                              HasSubstr("the recording does not tell it")));
   const Table arms(folder_ / "aided/report/calibration_arms.csv");
-  EXPECT_NEAR(arms.column("antenna_down_cm").back(),
-              100 * metrics["calibration"]["lever_arm"]["value"][2].get<double>(), 1e-3);
+  EXPECT_NEAR(arms.column("antenna_down_m").back(),
+              metrics["calibration"]["lever_arm"]["value"][2].get<double>(), 1e-5);
 }
 
 double mean_of(const json& squares) { return squares["mean"]; }
@@ -129,12 +132,71 @@ TEST_F(Report, OfACleanTripIsCalmAndConsistent) {
   }
 }
 
+TEST_F(Report, MetricsSayWhenWhereFromAndWithWhat) {
+  const json m = run("trip.rawlog", "clean", {"--no-report"});
+  EXPECT_EQ(m["schema_version"], 1);
+  EXPECT_THAT(m["command"], HasSubstr("--no-report"));
+  EXPECT_THAT(m["start"]["utc"].get<std::string>(), testing::EndsWith("Z"));
+  EXPECT_NEAR(m["end"]["gps_second"].get<double>() - m["start"]["gps_second"].get<double>(),
+              m["duration_s"], 1e-6);
+  EXPECT_GT(m["distance_m"], 100);
+  EXPECT_EQ(m["notices"][0]["kind"], "aligned");
+  for (const char* name : {"mrpt", "ceres", "eigen", "opencv"}) {
+    EXPECT_THAT(m["libraries"][name].get<std::string>(), HasSubstr(".")) << name;
+  }
+}
+
+TEST_F(Report, NoneOfAnEarlierRunStaysBesideNewMetrics) {
+  run("trip.rawlog", "run");
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "run/report/index.html"));
+  run("trip.rawlog", "run", {"--no-report"});
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "run/report"));
+}
+
+TEST_F(Report, TheReferenceIsThereAsTheSolutionIs) {
+  run("trip.rawlog", "run", {"--no-report", "--set", "calibrate.mode=none"});
+  const std::vector<std::string> solution = folder_.lines("run/solution.tum");
+  const std::vector<std::string> reference = folder_.lines("run/reference.tum");
+  EXPECT_THAT(reference[0], testing::StartsWith("# East-North-Up of the first epoch"));
+  const auto pose = [](const std::string& line) {
+    std::istringstream words(line);
+    std::vector<double> numbers(8);
+    for (double& number : numbers) words >> number;
+    return numbers;
+  };
+  const std::vector<double> last = pose(solution.back());
+  const auto at = std::find_if(reference.begin() + 1, reference.end(), [&](const auto& line) {
+    return std::abs(pose(line)[0] - last[0]) < 1e-3;
+  });
+  ASSERT_NE(at, reference.end());
+  for (size_t i = 1; i < 4; ++i) EXPECT_NEAR(pose(*at)[i], last[i], 0.1);
+  for (size_t i = 4; i < 8; ++i) EXPECT_NEAR(std::abs(pose(*at)[i]), std::abs(last[i]), 0.02);
+}
+
+TEST_F(Report, RunsAreShownTogether) {
+  run("trip.rawlog", "a", {"--no-report"});
+  run("trip.rawlog", "b", {"--no-report", "--set", "gnss.sigma_scale=2"});
+  const Outcome both = foucault({"compare", folder_ / "a", folder_ / "b", "--out", folder_ / "c"});
+  ASSERT_EQ(both.exit_code, 0) << both.err;
+  const json overview = section("c", "Overview");
+  EXPECT_EQ(overview["tables"][1]["rows"].size(), 6U) << "three axes of position and attitude";
+  EXPECT_EQ(overview["figures"].size(), 4U);
+  EXPECT_EQ(foucault({"compare", folder_ / "a", "--out", folder_ / "d"}).exit_code, 2);
+  const Outcome none = foucault({"compare", folder_ / "a", folder_ / "x", "--out", folder_ / "d"});
+  EXPECT_EQ(none.exit_code, 1);
+  EXPECT_THAT(none.err, HasSubstr("x/solution.csv"));
+}
+
 /// Negative control: a filter that takes fixes for twice as good, or half as good, as they are.
 TEST_F(Report, SigmasThatAreWrongByTwoAreSeen) {
-  const json small = run("trip.rawlog", "small", {"--no-report", "--set", "gnss.sigma_scale=0.5"});
+  const json small =
+      run("trip.rawlog", "small",
+          {"--no-report", "--set", "gnss.sigma_scale=0.5", "--set", "calibrate.noise=off"});
   EXPECT_GT(mean_of(small["consistency"]["nis"]), small["consistency"]["nis"]["mean_high"]);
   EXPECT_LT(small["consistency"]["nis"]["inside_95"], 0.85);
-  const json large = run("trip.rawlog", "large", {"--no-report", "--set", "gnss.sigma_scale=2"});
+  const json large =
+      run("trip.rawlog", "large",
+          {"--no-report", "--set", "gnss.sigma_scale=2", "--set", "calibrate.noise=off"});
   EXPECT_LT(mean_of(large["consistency"]["nis"]), large["consistency"]["nis"]["mean_low"]);
 }
 

@@ -1,5 +1,7 @@
 #include "command.h"
 
+#include "commands/compare.h"
+
 namespace foucault::app {
 
 const std::vector<Command>& commands() {
@@ -13,6 +15,7 @@ const std::vector<Command>& commands() {
       {"evaluate", "withhold fixes, measure the drift of every method", declare_evaluate},
       {"tune", "search the parameters with the least drift", declare_tune},
       {"lab", "study the models on exact motion", declare_lab},
+      {"compare", "show two runs or more together, with differences", declare_compare},
       {"report", "draw a report again from its numbers", declare_report},
   };
   return all;

@@ -38,15 +38,6 @@ navigation::NavigationRunOptions run_options(const Settings& settings,
   return options;
 }
 
-std::unique_ptr<state::Estimator> drive(std::unique_ptr<measurement::Navigator> navigator,
-                                        const Settings& settings, const state::Mounting& mounting,
-                                        state::Sink& sink) {
-  alignment::Aligner aligner(settings.alignment, settings.imu.noise(), mounting,
-                             settings.calibrate.layout());
-  return std::make_unique<navigation::NavigationRun>(std::move(navigator), std::move(aligner),
-                                                     run_options(settings, mounting), sink);
-}
-
 std::unique_ptr<measurement::Navigator> window(preintegration::PreintegrationModel model,
                                                const Settings& settings) {
   return std::make_unique<fgo::WindowNavigator>(settings.fgo, model, settings.imu.noise(),
@@ -100,6 +91,15 @@ std::unique_ptr<state::Estimator> make_batch(const Settings& settings,
 }
 
 }  // namespace
+
+std::unique_ptr<state::Estimator> drive(std::unique_ptr<measurement::Navigator> navigator,
+                                        const Settings& settings, const state::Mounting& mounting,
+                                        state::Sink& sink) {
+  alignment::Aligner aligner(settings.alignment, settings.imu.noise(), mounting,
+                             settings.calibrate.layout());
+  return std::make_unique<navigation::NavigationRun>(std::move(navigator), std::move(aligner),
+                                                     run_options(settings, mounting), sink);
+}
 
 const std::vector<Method>& methods() {
   static const std::vector<Method> all{

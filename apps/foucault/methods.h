@@ -27,6 +27,11 @@ struct Method {
 /// In the order shown to users.
 const std::vector<Method>& methods();
 
+/// The driver of all methods around a navigator of one's own.
+std::unique_ptr<state::Estimator> drive(std::unique_ptr<measurement::Navigator> navigator,
+                                        const Settings& settings, const state::Mounting& mounting,
+                                        state::Sink& sink);
+
 /// Throws UsageError naming the known methods.
 const Method& find_method(const std::string& name);
 

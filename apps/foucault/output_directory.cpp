@@ -227,6 +227,21 @@ void OutputDirectory::replace_entries() {
     }
     fail(target_, std::strerror(error));
   }
+  for (const fs::path& name : names) {
+    withdrawn_.erase(std::remove(withdrawn_.begin(), withdrawn_.end(), name.string()),
+                     withdrawn_.end());
+  }
+  remove_withdrawn();
+}
+
+/// Into the staging folder, which goes with what was replaced.
+void OutputDirectory::remove_withdrawn() {
+  for (const std::string& name : withdrawn_) {
+    if (!is_there(target_ / name)) continue;
+    if (const int error = move_to_new(target_ / name, staging_ / name)) {
+      fail(target_ / name, std::strerror(error));
+    }
+  }
 }
 
 std::vector<std::string> written_lines(const std::string& target, bool with_report) {

@@ -25,6 +25,10 @@ class OutputDirectory {
   /// Where to write until commit().
   const std::filesystem::path& staging() const { return staging_; }
 
+  /// What commit() does not write and what an earlier result may have left: it would belong to
+  /// none of the new results. An entry of that name goes when the others are replaced.
+  void withdraw(const std::string& name) { withdrawn_.push_back(name); }
+
   /// Moves everything to the target, over entries of the same name there; other entries of an
   /// existing target stay. Never is an entry missing or half there, and if one cannot be replaced,
   /// all are put back. Throws DataError, also if the staging folder has vanished meanwhile, and
@@ -34,8 +38,10 @@ class OutputDirectory {
  private:
   void make_staging();
   void replace_entries();
+  void remove_withdrawn();
 
   std::filesystem::path target_;
+  std::vector<std::string> withdrawn_;
   std::vector<std::filesystem::path> new_parents_;  ///< folders made above it, the deepest first
   std::filesystem::path staging_;
   std::unique_ptr<HeldFolder> held_;  ///< the staging folder

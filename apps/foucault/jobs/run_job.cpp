@@ -115,11 +115,14 @@ RunResult run_into(const RunJob& job, const std::filesystem::path& folder, Conso
 
   RunResult result;
   result.method = job.method;
+  result.command_line = job.command_line;
+  result.imu = settings.imu.preset;
   result.log = std::filesystem::path(job.log).filename().string();
   result.out = job.out;
   result.report = job.report;
   result.statistics_from_s = settings.output.statistics_from_s;
   result.metrics = output.finish();
+  result.facts = output.facts();
   result.damage = source.damage();
   if (result.metrics.epochs == 0) {
     if (result.damage) throw DataError(*result.damage);
@@ -139,6 +142,7 @@ RunResult run(const RunJob& job, Console& console) {
   find_method(job.method);
   job.settings.imu.noise();
   OutputDirectory out(job.out);
+  for (const char* name : {"report", "reference.tum"}) out.withdraw(name);
   const RunResult result = run_into(job, out.staging(), console);
   out.commit();
   return result;

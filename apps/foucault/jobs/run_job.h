@@ -8,6 +8,7 @@
 #include "console.h"
 #include "foucault/core/profile.h"
 #include "foucault/evaluation/run_metrics.h"
+#include "jobs/run_facts.h"
 #include "resources.h"
 #include "settings.h"
 
@@ -32,6 +33,9 @@ struct RunResult {
   evaluation::RunMetrics metrics;
   std::vector<evaluation::CalibratedBlock> calibration;
   double statistics_from_s = 0;
+  RunFacts facts;
+  std::string command_line;
+  std::string imu;                 ///< preset of its noise
   Resources resources;             ///< of reading and estimating, without the report
   std::vector<StageTime> profile;  ///< of everything, if asked for
   /// Why the log broke off, one line; the results are up to there.

@@ -27,23 +27,32 @@ RunOutput::RunOutput(const std::filesystem::path& folder, const state::Mounting&
     : mounting_(mounting),
       statistics_from_s_(options.statistics_from_s),
       solution_(folder, mounting),
+      reference_(folder / "reference.tum"),
       comparison_(
           mounting,
           [this](const state::Epoch& epoch, const state::ReferenceError& error) {
             reference_error(epoch, error);
           },
           comparison_options(keep_references_s)),
+      facts_(mounting),
       report_(report),
       console_(console) {}
 
 void RunOutput::measurement(const Measurement& measurement) {
+  if (!start_ns_) start(stamp(measurement));
+  facts_.measurement(measurement);
+  if (report_ != nullptr) report_->measurement(measurement);
   if (const auto* fix = std::get_if<GnssFix>(&measurement)) {
     if (!metrics_) start_metrics(fix->t_ns);
   } else if (const auto* reference = std::get_if<ReferencePose>(&measurement)) {
     comparison_.add(*reference);
-  } else if (const auto* increment = std::get_if<ImuIncrement>(&measurement)) {
-    if (report_ != nullptr) report_->imu_stamp(increment->t_end_ns);
+    reference_.add(*reference);
   }
+}
+
+void RunOutput::start(int64_t t_ns) {
+  start_ns_ = t_ns;
+  if (report_ != nullptr) report_->start(t_ns);
 }
 
 void RunOutput::start_metrics(int64_t first_fix_ns) {
@@ -55,6 +64,7 @@ void RunOutput::start_metrics(int64_t first_fix_ns) {
 
 void RunOutput::epoch(const state::Epoch& epoch) {
   last_epoch_ = epoch;
+  facts_.epoch(epoch);
   write(epoch);
   collect(epoch);
   const StageTimer timer(Stage::statistics);
@@ -65,6 +75,7 @@ void RunOutput::epoch(const state::Epoch& epoch) {
 void RunOutput::write(const state::Epoch& epoch) {
   const StageTimer timer(Stage::write);
   solution_.epoch(epoch);
+  reference_.origin(epoch.position);
 }
 
 void RunOutput::collect(const state::Epoch& epoch) {
@@ -96,6 +107,7 @@ void RunOutput::catching_up(std::size_t left) {
 }
 
 void RunOutput::notice(const state::Notice& notice) {
+  facts_.notice(notice);
   if (report_ != nullptr) report_->notice(notice);
   if (notice.kind == state::NoticeKind::aligned) {
     console_.say(fmt::format("start      {}, {}", utc_text(notice.t_ns), notice.text));
@@ -116,6 +128,7 @@ void RunOutput::reference_error(const state::Epoch& epoch, const state::Referenc
 evaluation::RunMetrics RunOutput::finish() {
   const StageTimer timer(Stage::write);
   solution_.finish();
+  reference_.finish();
   if (!metrics_) return {};
   const evaluation::RunMetrics metrics = metrics_->metrics();
   if (report_ == nullptr) return metrics;

@@ -7,8 +7,10 @@
 #include "foucault/content/run_report.h"
 #include "foucault/evaluation/reference_error.h"
 #include "foucault/evaluation/run_metrics.h"
+#include "foucault/export/reference_tum.h"
 #include "foucault/export/solution_writer.h"
 #include "foucault/state/interfaces.h"
+#include "jobs/run_facts.h"
 #include "settings.h"
 
 namespace foucault::app {
@@ -39,8 +41,10 @@ class RunOutput : public state::Sink {
   /// Completes the files, and what the report needs.
   evaluation::RunMetrics finish();
   const state::Epoch& last_epoch() const { return last_epoch_; }
+  const RunFacts& facts() const { return facts_; }
 
  private:
+  void start(int64_t t_ns);
   void start_metrics(int64_t first_fix_ns);
   void write(const state::Epoch& epoch);
   void collect(const state::Epoch& epoch);
@@ -48,10 +52,13 @@ class RunOutput : public state::Sink {
 
   state::Mounting mounting_;
   double statistics_from_s_;
+  std::optional<int64_t> start_ns_;  ///< first stamp of the recording
   exports::SolutionWriter solution_;
+  exports::ReferenceTum reference_;
   evaluation::ReferenceComparison comparison_;
   std::optional<evaluation::RunMetricsCollector> metrics_;  ///< from the first fix on
   state::Epoch last_epoch_;
+  RunFacts facts_;
   content::RunReport* report_;
   Console& console_;
   std::size_t most_left_ = 0;  ///< to catch up with

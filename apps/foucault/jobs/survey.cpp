@@ -2,12 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <memory>
 #include <optional>
 
-#include "foucault/calibration/noise_fit.h"
+#include "foucault/calibration/learn.h"
 #include "foucault/core/error.h"
+#include "foucault/diagnosis/fix_judge.h"
 #include "foucault/rawlog/rawlog_source.h"
+#include "foucault/state/told_blocks.h"
 #include "methods.h"
 
 namespace foucault::app {
@@ -15,20 +19,15 @@ namespace {
 
 class Watcher : public state::Sink {
  public:
-  void epoch(const state::Epoch& epoch) override {
-    way.epoch(epoch);
-    last = epoch;
-  }
-  void fix(const state::FixResult& result) override {
-    if (result.verdict == state::FixVerdict::used) way.used(result.t_ns);
-  }
+  void epoch(const state::Epoch& epoch) override { last = epoch; }
   void observation(const state::ObservationResult& result) override {
     if (result.used) ++used[std::string(result.name)];
   }
 
   std::optional<state::Epoch> last;
+  state::Told told;
   std::map<std::string, int> used;
-  calibration::WayRecorder way;
+  calibration::UnfoldedWay way;
 };
 
 /// A filter through the log; none where it cannot be processed, which the run itself tells.
@@ -37,10 +36,15 @@ std::optional<Watcher> look_through(const std::string& log, const Settings& sett
   Watcher watcher;
   try {
     rawlog::RawlogSource source(log, settings.imu.sample_kind(), settings.rawlog);
+    watcher.told = {settings.calibrate.layout(), settings.calibrate.time_offset_s,
+                    source.lever_arm(), source.mounting().q_v_b};
+    ekf::EkfOptions coarse = settings.ekf;
+    coarse.cov_interval_s = 0.5;
     const std::unique_ptr<state::Estimator> estimator =
-        find_method("ekf").make(settings, source.mounting(), watcher);
+        drive(std::make_unique<calibration::WayRecorder>(
+                  settings.imu.noise(), settings.calibrate.layout(), coarse, watcher.way),
+              settings, source.mounting(), watcher);
     while (const std::optional<Measurement> measurement = source.next()) {
-      watcher.way.add(*measurement);
       estimator->process(*measurement);
       console.progress("looking through", source.progress());
     }
@@ -75,56 +79,118 @@ bool leaves_open(const Settings& settings) {
   const measurement::AidOptions& aids = settings.aids;
   if (c.mode == "none") return false;
   const bool wheels = aids.uses(aids.nonholonomic) || aids.uses(aids.wheel_speed);
-  return c.time_offset != "off" || c.imu_noise != "off" ||
+  return c.time_offset != "off" || c.noise != "off" ||
          (wheels &&
           (c.mounting == "auto" || c.wheel_scale == "auto" || c.wheel_lever_arm == "auto"));
 }
 
+LearnedNoise noise_of(const calibration::NoiseModel& model, const calibration::RecordedWay& way) {
+  using calibration::NoiseOf;
+  LearnedNoise noise;
+  noise.imu = model.imu;
+  noise.imu.gyro_turn_on_sigma = std::max(noise.imu.gyro_turn_on_sigma, noise.imu.gyro_bias_sigma);
+  noise.imu.accel_turn_on_sigma =
+      std::max(noise.imu.accel_turn_on_sigma, noise.imu.accel_bias_sigma);
+  noise.sigma_scale = model.fix_white;
+  const Eigen::Vector3d slip = told_sigma(way, NoiseOf::slip);
+  if (slip[0] > 0) noise.slip_m_s = Eigen::Vector2d(model.slip * slip[0], model.bounce * slip[1]);
+  const double wheel = told_sigma(way, NoiseOf::wheel)[0];
+  if (wheel > 0) noise.wheel_m_s = model.wheel * wheel;
+  return noise;
+}
+
+std::string noise_text(const Settings& settings) {
+  std::string text = fmt::format(
+      "imu.arw_deg_sqrt_h {:.3g}, vrw_m_s_sqrt_h {:.3g}, gyro_bias_deg_h {:.3g}, accel_bias_mgal "
+      "{:.3g}, gnss.sigma_scale {:.2g}",
+      *settings.imu.arw_deg_sqrt_h, *settings.imu.vrw_m_s_sqrt_h, *settings.imu.gyro_bias_deg_h,
+      *settings.imu.accel_bias_mgal, settings.gnss.sigma_scale);
+  const measurement::AidOptions& aids = settings.aids;
+  if (aids.nonholonomic_sigma_m_s)
+    text += fmt::format(", aids.nonholonomic_sigma_m_s {:.2g} (down {:.2g})",
+                        *aids.nonholonomic_sigma_m_s,
+                        aids.nonholonomic_down_sigma_m_s.value_or(*aids.nonholonomic_sigma_m_s));
+  if (aids.wheel_speed_sigma_m_s)
+    text += fmt::format(", wheel_speed_sigma_m_s {:.2g}", *aids.wheel_speed_sigma_m_s);
+  return text;
+}
+
 }  // namespace
 
-/// The noise is raised once the clocks agree to about what is linear, after the first pass.
+void LearnedNoise::apply_to(Settings& settings) const {
+  settings.imu = settings.imu.with(imu);
+  settings.gnss.sigma_scale *= sigma_scale;
+  if (slip_m_s) {
+    settings.aids.nonholonomic_sigma_m_s = slip_m_s->x();
+    settings.aids.nonholonomic_down_sigma_m_s = slip_m_s->y();
+  }
+  if (wheel_m_s) settings.aids.wheel_speed_sigma_m_s = *wheel_m_s;
+}
+
+/// The noise is learned once the clocks agree to about what is linear, after the first pass; with
+/// it the log is gone through again.
 Survey Surveyor::survey(const std::string& log, Settings settings) {
   constexpr int kMostPasses = 4;
   constexpr double kMost = 1;  // [s]; as the key
-  bool asked = false;          // for the noise
+  bool asks_noise = settings.calibrate.noise != "off";
   Survey found;
   found.time_offset_s = settings.calibrate.time_offset_s;
   settings.calibrate = settings.calibrate.resolved({true, true});
   for (int pass = 0; pass < kMostPasses; ++pass) {
     const std::optional<Watcher> watcher = look_through(log, settings, console_);
     if (!watcher) break;
+    found.blocks = evaluation::calibrated_blocks(
+        state::as_users_know(*watcher->last, watcher->told), watcher->told.layout);
+    found.told = evaluation::calibrated_blocks(state::prior_as_users_know(watcher->told),
+                                               watcher->told.layout);
     found.carried = {uses(*watcher, "nonholonomic"), uses(*watcher, "wheel_speed")};
     const std::optional<double> rest = rest_of_offset(*watcher, settings.calibrate.layout());
     const bool moves = rest && std::abs(found.time_offset_s + *rest) < kMost;
-    const bool asks = settings.calibrate.imu_noise == "on" && !asked && (pass > 0 || !moves);
-    asked |= asks;
-    const bool raised = asks && raise_noise(log, *watcher->way.way(), settings, found);
+    const calibration::RecordedWay way = calibration::folded(watcher->way, watcher->last->slow);
+    const bool learns = asks_noise && !way.empty() && (pass > 0 || !moves);
+    if (learns) {
+      asks_noise = false;
+      found.noise = learn_noise(log, way, settings);
+      found.noise->apply_to(settings);
+    }
     if (moves) {
       found.time_offset_s += *rest;
       settings.calibrate.time_offset_s = settings.rawlog.fix_delay_s = found.time_offset_s;
     }
-    if (!moves && !raised) break;
+    if (!moves && !learns) break;
   }
   return found;
 }
 
-/// False if the recording does not contradict it.
-bool Surveyor::raise_noise(const std::string& log, const calibration::RecordedWay& way,
-                           Settings& settings, Survey& found) {
-  console_.progress("noise of the IMU", 0);
-  const calibration::NoiseFit fit =
-      calibration::raised_noise(way, settings.imu.noise(), settings.calibrate.layout());
+/// What the methods take of slip and of the wheels' speed is found whatever was told. The rest as
+/// it was told, unless the recording contradicts it: twice the gain of the likelihood would be a
+/// chi-square of as many degrees of freedom as numbers were told.
+LearnedNoise Surveyor::learn_noise(const std::string& log, const calibration::RecordedWay& way,
+                                   const Settings& settings) {
+  constexpr double kChance = 1e-4;
+  calibration::NoiseModel told;
+  told.imu = settings.imu.noise();
+  const std::vector<calibration::RecordedWay> ways{way};
+  const calibration::NoiseAxes axes = calibration::axes_of(ways);
+  console_.progress("noise", 0);
+  const calibration::Learned aids = calibration::learn(ways, told, {axes.of_aids});
+  const calibration::Learned all = calibration::learn(ways, aids.noise, {axes.all()});
   console_.clear_progress();
-  if (fit.gain == 0) return false;
-  found.noise = fit.noise;
-  settings.imu = settings.imu.with(fit.noise);
+  const double chance =
+      diagnosis::chi_square_tail(2 * all.gain, static_cast<int>(axes.told.size()));
+  if (settings.calibrate.noise == "auto" && chance > kChance) return noise_of(aids.noise, way);
+  const LearnedNoise noise = noise_of(all.noise, way);
+  Settings with = settings;
+  noise.apply_to(with);
   console_.warn(fmt::format(
-      "{}: the recording shows more noise of the IMU than was told, which is taken: "
-      "imu.arw_deg_sqrt_h {:.3g}, vrw_m_s_sqrt_h {:.3g}, gyro_bias_deg_h {:.3g}, accel_bias_mgal "
-      "{:.3g} (calibrate.imu_noise=off: as told)",
-      log, *settings.imu.arw_deg_sqrt_h, *settings.imu.vrw_m_s_sqrt_h,
-      *settings.imu.gyro_bias_deg_h, *settings.imu.accel_bias_mgal));
-  return true;
+      "{}: noise as the recording shows it, not as told: {} (calibrate.noise=off: as told)", log,
+      noise_text(with)));
+  return noise;
+}
+
+const Survey* Surveyor::found(const std::string& log) const {
+  const auto found = seen_.find(log);
+  return found == seen_.end() ? nullptr : &found->second;
 }
 
 Settings Surveyor::complete(const std::string& log, const Settings& settings) {
@@ -136,7 +202,8 @@ Settings Surveyor::complete(const std::string& log, const Settings& settings) {
   auto found = seen_.find(log);
   if (found == seen_.end()) found = seen_.emplace(log, survey(log, settings)).first;
   completed.calibrate = settings.calibrate.resolved(found->second.carried);
-  if (found->second.noise) completed.imu = settings.imu.with(*found->second.noise);
+  completed.calibrate.noise = "off";  // it is in the settings now
+  if (found->second.noise) found->second.noise->apply_to(completed);
   if (settings.calibrate.time_offset != "off") {
     completed.calibrate.time_offset_s = completed.rawlog.fix_delay_s = found->second.time_offset_s;
   }

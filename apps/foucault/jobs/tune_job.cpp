@@ -55,7 +55,7 @@ tuning::SearchPlan plan(const TuneJob& job, Console& console) {
     // What the recording shows is asked once, at the base: points are compared with each other. The
     // noise is what is tuned.
     const auto as_told = [&log](Settings settings) {
-      settings.calibrate.imu_noise = "off";
+      settings.calibrate.noise = "off";
       return settings_for(log, settings);
     };
     surveyor->complete(log, as_told(job.base));

@@ -37,6 +37,8 @@ content::OutageCurve curve(const evaluation::MethodOutages::Entry& entry) {
     curve.since_begin_s.push_back(sample.since_begin_s);
     curve.horizontal_m.push_back(sample.horizontal());
     curve.vertical_m.push_back(sample.vertical());
+    curve.north_m.push_back(sample.error_n.x());
+    curve.east_m.push_back(sample.error_n.y());
   }
   curve.max_horizontal_m = entry.drift->maximum.horizontal;
   curve.max_vertical_m = entry.drift->maximum.vertical;
@@ -95,6 +97,17 @@ std::string name_of(const ComparedRuns& runs, const evaluation::EvaluationSummar
   return summary.row_header() == "IMU"
              ? fmt::format("{}, {}", runs.front()->imu, runs.front()->recording)
              : runs.front()->recording;
+}
+
+/// The recording, and which of its shifts is shown if there are several.
+std::string shift_text(const std::string& name, const ComparedRuns& runs,
+                       const std::vector<evaluation::ExperimentResult>& results) {
+  const evaluation::ExperimentResult& shown = *runs.front();
+  const bool several = std::any_of(results.begin(), results.end(), [&](const auto& r) {
+    return r.recording == shown.recording && r.shift_s != shown.shift_s;
+  });
+  if (!several) return name;
+  return fmt::format("{}, only the outages shifted by {} s", name, shown.shift_s);
 }
 
 /// Points with a mark where no line is to be drawn.
@@ -363,6 +376,8 @@ content::EvaluationReport report_of(const evaluation::EvaluationSummary& summary
     const std::string name = name_of(runs, summary);
     report.timelines.push_back(timeline(runs, name));
     report.maps.push_back(outage_map(runs, name));
+    report.timelines.back().subtitle = report.maps.back().subtitle =
+        shift_text(name, runs, summary.results());
   }
   const auto& [command_line, config, version] = labels.origin;
   if (!command_line.empty()) report.listings.push_back({"Command", command_line});
@@ -383,6 +398,11 @@ content::EvaluationReport evaluation_report(const evaluation::EvaluationSummary&
   const evaluation::EvaluationSummary whole(as_configured(summary.results(), labels.ablation));
   content::EvaluationReport report = report_of(whole, labels);
   report.tables.insert(report.tables.begin(), ablation_table(summary, labels.ablation));
+  for (const evaluation::AblationRow& row :
+       evaluation::ablation_rows(summary.overall(), labels.ablation)) {
+    report.ablation.push_back(
+        {row.what.method, row.what.without, row.horizontal_rms_m, row.vertical_rms_m});
+  }
   return report;
 }
 

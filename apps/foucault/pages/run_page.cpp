@@ -1,9 +1,13 @@
 #include "pages/run_page.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <utility>
 
+#include "foucault/core/fix_quality.h"
+#include "foucault/core/time.h"
 #include "foucault/core/units.h"
 #include "texts/run_text.h"
 
@@ -53,13 +57,118 @@ page::Table reference_table(const evaluation::ReferenceMetrics& r) {
   return table;
 }
 
+// ---- what a surveyor reads first
+
+std::string moment_text(const std::optional<int64_t>& t_ns) {
+  if (!t_ns) return "-";
+  const GpsTime gps = unix_to_gps(*t_ns);
+  return fmt::format("{}, GPS week {} {:.3f} s", utc_text(*t_ns), gps.week,
+                     static_cast<double>(gps.tow_ns) * 1e-9);
+}
+
+std::string level_text(const Level& level, double factor, int decimals, const char* unit) {
+  if (level.empty()) return "-";
+  return fmt::format("mean {:.{}f}{}, largest {:.{}f}{}", level.mean() * factor, decimals, unit,
+                     level.largest() * factor, decimals, unit);
+}
+
+std::string fix_types_text(const RunFacts& facts) {
+  int64_t sum = 0;
+  for (const auto& [quality, count] : facts.fixes) sum += count;
+  std::vector<std::string> parts;
+  for (auto it = facts.fixes.rbegin(); it != facts.fixes.rend(); ++it) {
+    const double share = static_cast<double>(it->second) / static_cast<double>(sum);
+    parts.push_back(fmt::format("{} {}", words_of(it->first), percent(share)));
+  }
+  return parts.empty() ? "-" : fmt::format("{}", fmt::join(parts, ", "));
+}
+
+const evaluation::CalibratedBlock* find_block(const RunResult& result, std::string_view name) {
+  for (const evaluation::CalibratedBlock& block : result.calibration) {
+    if (block.block.name == name) return &block;
+  }
+  return nullptr;
+}
+
+std::string lever_arm_text(const RunResult& result) {
+  if (const evaluation::CalibratedBlock* found = find_block(result, "lever_arm")) {
+    const std::vector<double>& v = found->value;
+    const std::vector<double>& s = found->sigma;
+    return fmt::format(
+        "estimated: forward {:.3f} ± {:.3f}, right {:.3f} ± {:.3f}, down {:.3f} ± {:.3f} m", v[0],
+        s[0], v[1], s[1], v[2], s[2]);
+  }
+  if (!result.facts.lever_arm_b) return "-";
+  if (!result.facts.lever_arm_known) return "not known, zero was taken";
+  const Eigen::Vector3d& arm = *result.facts.lever_arm_b;
+  return fmt::format("as recorded: {:.3f}, {:.3f}, {:.3f} m along the axes of the IMU", arm.x(),
+                     arm.y(), arm.z());
+}
+
+std::string separation_text(const RunResult& result) {
+  const bool smooths = result.method == "rts" || result.method == "batch";
+  return smooths
+             ? "the run forward is not kept; run --method ekf and see `foucault compare`"
+             : fmt::format("none: {} runs forward only; rts and batch go both ways", result.method);
+}
+
+std::string warnings_text(const RunFacts& facts) {
+  const auto news = [](const state::Notice& n) { return n.kind != state::NoticeKind::aligned; };
+  const auto count = std::count_if(facts.notices.begin(), facts.notices.end(), news);
+  const int64_t more = facts.notices_seen - static_cast<int64_t>(facts.notices.size());
+  if (count + more == 0) return "none";
+  return fmt::format("{}, listed under Timeline", count + more);
+}
+
+/// Reasons tell times from the first epoch, figures from the first stamp of the recording.
+std::string reasons_clock(const RunResult& result) {
+  const RunFacts& f = result.facts;
+  if (!f.begin_ns || !f.recording_begin_ns) return {};
+  const double later = seconds_between(*f.recording_begin_ns, *f.begin_ns);
+  if (later < 0.5) return {};
+  return fmt::format(
+      "Times here count from the start of the solution; in the figures, {:.1f} s more.", later);
+}
+
+page::Table summary_table(const RunResult& result) {
+  const RunFacts& f = result.facts;
+  const double moving = f.moving_s > 0 ? f.distance_m / f.moving_s : 0;
+  page::Table table;
+  table.title = "Run";
+  table.of_words = true;
+  table.rows = {
+      {"Start of the solution", moment_text(f.begin_ns)},
+      {"End", moment_text(f.end_ns)},
+      {"Duration, distance",
+       fmt::format("{:.1f} s, {:.1f} m", result.metrics.duration_s, f.distance_m)},
+      {"Speed", fmt::format("mean {:.2f} m/s while moving ({:.0f} s), largest {:.2f} m/s", moving,
+                            f.moving_s, f.speed_m_s.largest())},
+      {"Fix types", fix_types_text(f)},
+      {"Fixes",
+       fmt::format("{} used, {} rejected", result.metrics.gnss.used, result.metrics.gnss.rejected)},
+      {"Sigma, horizontal (2D)", level_text(f.horizontal_sigma_m, 1, 4, " m")},
+      {"Sigma, vertical", level_text(f.vertical_sigma_m, 1, 4, " m")},
+      {"Sigma, roll and pitch", level_text(f.tilt_sigma_rad, units::kDegrees, 4, "°")},
+      {"Sigma, heading", level_text(f.heading_sigma_rad, units::kDegrees, 4, "°")},
+      {"Forward against backward", separation_text(result)},
+      {"IMU (its noise)", result.imu},
+      {"Lever arm, IMU to antenna", lever_arm_text(result)},
+      {"Frame, height", "of the receiver, taken as WGS-84; heights above its ellipsoid"},
+      {"Warnings", warnings_text(f)},
+  };
+  return table;
+}
+
 }  // namespace
 
 page::Banner verdict_banner(const RunResult& result) {
   const Trust& trust = result.metrics.trust;
-  if (!trust.trustworthy) return {true, "This run cannot be believed", trust.reasons};
   std::vector<std::string> lines = trust.reasons;
-  if (lines.empty()) lines.push_back(size_text(result));
+  const std::string clock = reasons_clock(result);
+  if (!lines.empty() && !clock.empty()) lines.push_back(clock);
+  if (!trust.trustworthy) return {true, "This run cannot be believed", lines};
+  if (!lines.empty()) return {false, "This run is trustworthy, with reservations", lines};
+  lines.push_back(size_text(result));
   return {false, "This run is trustworthy", lines};
 }
 
@@ -74,7 +183,7 @@ std::vector<page::KeyNumber> key_numbers(const RunResult& result) {
   }
   if (m.gnss.samples > 0) {
     const double horizontal = m.gnss.innovation_rms_n.head<2>().norm();
-    numbers.push_back({"Innovation, horizontal RMS", fmt::format("{:.2f}", 100 * horizontal), "cm",
+    numbers.push_back({"Innovation, horizontal RMS", fmt::format("{:.4f}", horizontal), "m",
                        "fix minus prediction"});
   }
   numbers.push_back({"Fixes used", fmt::format("{}", m.gnss.used), "",
@@ -88,7 +197,7 @@ std::vector<page::KeyNumber> key_numbers(const RunResult& result) {
 }
 
 std::vector<page::Table> metrics_tables(const RunResult& result) {
-  std::vector<page::Table> tables;
+  std::vector<page::Table> tables{summary_table(result)};
   if (result.metrics.reference) tables.push_back(reference_table(*result.metrics.reference));
   if (result.metrics.gnss.samples > 0) tables.push_back(gnss_table(result.metrics.gnss));
   return tables;

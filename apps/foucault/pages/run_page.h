@@ -10,6 +10,7 @@ namespace foucault::app {
 
 page::Banner verdict_banner(const RunResult& result);
 std::vector<page::KeyNumber> key_numbers(const RunResult& result);
+/// What a surveyor reads first, then the statistics.
 std::vector<page::Table> metrics_tables(const RunResult& result);
 
 }  // namespace foucault::app

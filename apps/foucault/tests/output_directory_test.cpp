@@ -52,6 +52,24 @@ TEST_F(OverEarlierResults, TheyStayWithoutCommit) {
   EXPECT_EQ(folder_.entries(), 1u);
 }
 
+TEST_F(OverEarlierResults, WhatIsWithdrawnGoesUnlessItIsWrittenAnew) {
+  OutputDirectory out(folder_ / "run");
+  exports::write_text_file(out.staging() / "a.txt", "new");
+  for (const char* name : {"report", "a.txt", "none"}) out.withdraw(name);
+  out.commit();
+  EXPECT_FALSE(fs::exists(folder_ / "run/report"));
+  EXPECT_EQ(folder_.text("run/a.txt"), "new");
+  EXPECT_EQ(folder_.text("run/notes.txt"), "mine");
+}
+
+TEST_F(OverEarlierResults, WithoutCommitNothingIsWithdrawn) {
+  {
+    OutputDirectory out(folder_ / "run");
+    out.withdraw("report");
+  }
+  EXPECT_TRUE(fs::exists(folder_ / "run/report/old.png"));
+}
+
 TEST_F(OverEarlierResults, CommitReplacesWhatItWritesAndNothingElse) {
   {
     OutputDirectory out(folder_ / "run");

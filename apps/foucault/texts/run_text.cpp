@@ -5,9 +5,11 @@
 
 #include <cmath>
 
+#include "foucault/core/time.h"
 #include "foucault/core/units.h"
 #include "foucault/export/json_object.h"
 #include "foucault/export/run_metrics_json.h"
+#include "libraries.h"
 #include "texts/profile_text.h"
 #include "version.h"
 
@@ -24,6 +26,59 @@ Json profile_json(const std::vector<StageTime>& profile) {
   }
   json["total_s"] = total_seconds(profile);
   return json;
+}
+
+/// Raised whenever a key goes or changes its meaning; new keys leave it.
+constexpr int kSchemaVersion = 1;
+
+Json moment_json(const std::optional<int64_t>& t_ns) {
+  if (!t_ns) return nullptr;
+  const GpsTime gps = unix_to_gps(*t_ns);
+  return Object()
+      .with("utc", utc_text(*t_ns))
+      .with("gps_week", gps.week)
+      .with("gps_second", static_cast<double>(gps.tow_ns) * 1e-9);
+}
+
+std::string kind_text(state::NoticeKind kind) {
+  switch (kind) {
+    case state::NoticeKind::aligned:
+      return "aligned";
+    case state::NoticeKind::imu_gap:
+      return "imu_gap";
+    case state::NoticeKind::realigned:
+      return "realigned";
+    case state::NoticeKind::fix_rejected:
+      return "fix_rejected";
+    case state::NoticeKind::skipped:
+      break;
+  }
+  return "notice";
+}
+
+/// When, how far, what was said on the way.
+Json facts_json(const RunFacts& facts) {
+  Json notices = Json::array();
+  for (const state::Notice& notice : facts.notices) {
+    notices.push_back(Object()
+                          .with("utc", utc_text(notice.t_ns))
+                          .with("kind", kind_text(notice.kind))
+                          .with("text", notice.text));
+  }
+  return Object()
+      .with("start", moment_json(facts.begin_ns))
+      .with("end", moment_json(facts.end_ns))
+      .with("distance_m", facts.distance_m)
+      .with("notices", notices)
+      .with("notices_seen", facts.notices_seen);
+}
+
+Json libraries_json() {
+  return Object()
+      .with("mrpt", kMrptVersion)
+      .with("ceres", kCeresVersion)
+      .with("eigen", kEigenVersion)
+      .with("opencv", kOpenCvVersion);
 }
 
 /// "-" if no fix counts for the statistics.
@@ -49,8 +104,9 @@ std::string size_text(const RunResult& result) {
 }
 
 std::string metrics_json(const RunResult& result) {
-  Json json = Object().with("method", result.method);
+  Json json = Object().with("method", result.method).with("schema_version", kSchemaVersion);
   json.update(exports::run_metrics_json(result.metrics, result.calibration));
+  json.update(facts_json(result.facts));
   json["statistics_from_s"] = result.statistics_from_s;
   json["cpu_s"] = result.resources.cpu_s;
   json["wall_s"] = result.resources.wall_s;
@@ -59,6 +115,8 @@ std::string metrics_json(const RunResult& result) {
   if (!result.profile.empty()) json["profile"] = profile_json(result.profile);
   if (result.damage) json["damage"] = *result.damage;
   json["version"] = kVersion;
+  json["libraries"] = libraries_json();
+  json["command"] = result.command_line;
   return json.dump(2) + "\n";
 }
 

@@ -6,7 +6,6 @@
 #include <cctype>
 
 #include "foucault/plot/text.h"
-#include "run_figures.h"
 #include "run_panels.h"
 
 namespace foucault::content {
@@ -67,8 +66,6 @@ Panel aid_panel(const RunData& data, const AidSummary& aid, const SquareHistory&
   const double largest =
       std::max(largest_finite(used.columns[0]), largest_finite(rejected.columns[0]));
   Panel panel = time_panel(data, aid_axis(aid, largest));
-  panel.x.min = 0;
-  panel.x.max = data.epoch_steps.last();
   panel.title = title;
   panel.note =
       fmt::format("mean {} · {} used, {} rejected", mean_text(aid), aid.used, aid.rejected);
@@ -111,7 +108,6 @@ Section aids_section(const RunData& data, const std::vector<AidSummary>& aids,
   Section section{"Aids"};
   if (aids.empty()) return section;
   section.tables = {aids_table(aids)};
-  section.figures = vehicle_figures(data, subtitle);
   Figure figure = squares_figure(data, aids, subtitle);
   if (!figure.panels.empty()) section.figures.push_back(std::move(figure));
   return section;

@@ -40,16 +40,17 @@ struct FigureLook {
 const std::vector<const char*> kAlongVehicle{"forward", "right", "down"};
 
 std::vector<FigureLook> known_looks() {
-  constexpr double kPpm = 1e6, kCm = 100;
+  constexpr double kPpm = 1e6;
   return {
       {"calibration_arms",
        "Calibration: lever arms",
-       {{"lever_arm", "Antenna", "cm", kCm, kAlongVehicle},
-        {"wheel_lever_arm", "Point without slip", "cm", kCm, kAlongVehicle}}},
+       {{"lever_arm", "Antenna", "m", 1, kAlongVehicle},
+        {"wheel_lever_arm", "Point without slip", "m", 1, kAlongVehicle}}},
       {"calibration_vehicle",
        "Calibration: mounting, wheels, time",
        {{"mounting", "Mounting", "°", 1 / kDegree, {"pitch", "heading"}},
         {"wheel_scale", "Wheel scale", "%", 100, {""}},
+        {"cornering_compliance", "Cornering compliance", "mrad/(m/s²)", 1000, {""}},
         {"time_offset", "Time offset", "ms", 1000, {""}},
         {"time_drift", "Time drift", "ppm", kPpm, {""}}}},
       {"calibration_scales",
@@ -154,7 +155,7 @@ Span settled_span(const ShownRow& row) {
 void add_prior_line(const ShownRow& row, double at, const char* edge, Panel& panel) {
   Series series = line("prior ±3σ", Ink::gray, {row.t.front(), row.t.back()}, {at, at});
   series.column = fmt::format("{} prior {}", row.title(), edge);
-  series.dashed = true;
+  series.dash = Dash::dashes;
   series.size = 1.4;
   panel.series.push_back(std::move(series));
 }

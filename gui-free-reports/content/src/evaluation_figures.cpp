@@ -1,12 +1,16 @@
 #include <fmt/format.h>
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 
 #include "foucault/content/evaluation_report.h"
+#include "foucault/core/median.h"
 #include "foucault/plot/text.h"
 #include "map_unit.h"
+#include "method_look.h"
 #include "series.h"
 
 namespace foucault::content {
@@ -19,17 +23,22 @@ namespace {
 constexpr size_t kGrowthPoints = 60;
 constexpr size_t kMostCurves = 120;  // in a panel
 
-/// The look of a method's curves: its colour, and a dash on every other one so that curves that
-/// coincide are both seen.
+/// Solid lines are thick, so that those over them leave both to be seen.
 Series method_series(const std::string& method, const MethodOrder& order) {
-  const auto found = std::find(order.begin(), order.end(), method);
-  const auto index = static_cast<size_t>(found - order.begin());
+  const MethodLook look = look_of(method, order);
   Series series;
   series.label = method;
-  series.ink = ink_of(index);
-  series.size = index % 2 == 0 ? 2.2 : 1.7;
-  series.dashed = index % 2 == 1;
+  series.ink = look.ink;
+  series.size = look.dash == Dash::none ? 2.2 : 1.7;
+  series.dash = look.dash;
+  series.shape = look.shape;
   return series;
+}
+
+/// Broken lines over unbroken ones, so that lines that coincide are both seen.
+void solid_first(std::vector<Series>& lines) {
+  std::stable_partition(lines.begin(), lines.end(),
+                        [](const Series& line) { return line.dash == Dash::none; });
 }
 
 /// Lower-case letters, digits and '_' of a name, for files.
@@ -94,6 +103,16 @@ void fill_rms(const MethodCurves& curves, const Component& component,
   }
 }
 
+/// Of the outages that last until t.
+double median_at(const MethodCurves& curves, const Component& component, double t) {
+  std::vector<double> values;
+  for (const OutageCurve& curve : curves.outages) {
+    const double value = value_at(curve, component, t);
+    if (std::isfinite(value)) values.push_back(value);
+  }
+  return values.empty() ? kNoValue : median(values);
+}
+
 std::vector<double> even_times(double length) {
   std::vector<double> times;
   for (size_t i = 0; i <= kGrowthPoints; ++i) {
@@ -135,6 +154,15 @@ Series outage_series(const MethodCurves& curves, const Component& component, Ink
   return series;
 }
 
+Series median_series(const MethodCurves& curves, const Component& component) {
+  Series series = line("median of all", Ink::black, even_times(longest(curves)), {});
+  series.column = curves.method + " median";
+  series.size = 1.4;
+  series.dash = Dash::dashes;
+  for (const double t : series.x) series.y.push_back(median_at(curves, component, t));
+  return series;
+}
+
 double largest(const DriftCase& drift_case, double OutageCurve::*maximum) {
   double result = 0;
   for (const MethodCurves& curves : drift_case.methods) {
@@ -154,7 +182,7 @@ double maximum_rms(const MethodCurves& curves, double OutageCurve::*maximum) {
 Panel curve_panel(const MethodCurves& curves, const MethodOrder& order, const Component& component,
                   double top) {
   Series rms = method_series(curves.method, order);
-  rms.dashed = false;
+  rms.dash = Dash::none;
   rms.size = 2.4;
   rms.column = curves.method + " rms";
   rms.label = "RMS of all";
@@ -168,7 +196,7 @@ Panel curve_panel(const MethodCurves& curves, const MethodOrder& order, const Co
   panel.y.max = top > 0 ? 1.06 * top : 1;
   panel.legend = LegendPlace::none;
   panel.note = fmt::format("{} m", significant_text(maximum_rms(curves, component.maximum)));
-  panel.series = {outage_series(curves, component, rms.ink), rms};
+  panel.series = {outage_series(curves, component, rms.ink), rms, median_series(curves, component)};
   return panel;
 }
 
@@ -183,8 +211,9 @@ Figure drift_curves(const DriftCase& drift_case, const MethodOrder& order) {
   Figure figure{"drift_curves_" + file_part(drift_case.name), "Drift during outages",
                 outages_text(drift_case),
                 "Position error from the beginning of each outage: a thin line an outage, the "
-                "thick line their RMS; the figure above each panel is the RMS of the maxima. Equal "
-                "axes for all methods. Drift that grows evenly is normal; one line far above the "
+                "thick line their RMS, the broken one their median; the figure above each panel is "
+                "the RMS of the maxima. Equal axes for all methods. Drift that grows evenly is "
+                "normal; one line far above the "
                 "rest is an outage worth a look."};
   for (const MethodCurves& curves : drift_case.methods) {
     if (curves.outages.size() <= kMostCurves) continue;
@@ -216,7 +245,6 @@ namespace {
 
 Panel maximum_panel(const DriftCase& drift_case, const MethodOrder& order,
                     const Component& component) {
-  constexpr Shape kShapes[] = {Shape::dot, Shape::diamond, Shape::square, Shape::triangle};
   Panel panel;
   panel.x = {"Outage", ""};
   panel.y = {component.name, "m", AxisKind::log};
@@ -224,7 +252,6 @@ Panel maximum_panel(const DriftCase& drift_case, const MethodOrder& order,
     const MethodCurves& curves = drift_case.methods[m];
     Series series = method_series(curves.method, order);
     series.mark = Mark::points;
-    series.shape = kShapes[m % std::size(kShapes)];
     series.size = 6.5;
     series.opacity = 0.85;
     for (size_t i = 0; i < curves.outages.size(); ++i) {
@@ -315,18 +342,38 @@ std::vector<double> growth_times(double length) {
   return times;
 }
 
+/// The times that tables of this field give.
+Series growth_marks(const MethodCurves& curves, const MethodOrder& order,
+                    const Component& component, double length) {
+  Series marks = method_series(curves.method, order);
+  marks.label.clear();
+  marks.column = component.name + std::string(" marks ") + curves.method;
+  marks.mark = Mark::points;
+  marks.size = 6.5;
+  std::vector<double> times;
+  for (const double t : {10.0, 20.0, 30.0, 60.0}) {
+    if (t <= length) times.push_back(t);
+  }
+  fill_rms(curves, component, times, marks);
+  return marks;
+}
+
 Panel growth_panel(const DriftCase& drift_case, const MethodOrder& order,
                    const Component& component) {
   Panel panel;
   panel.x = {"Time in outage", "s", AxisKind::log};
   panel.y = {component.name + std::string(" RMS"), "m", AxisKind::log};
+  std::vector<Series> marks;
   for (const MethodCurves& curves : drift_case.methods) {
     const double length = longest(curves);
     if (length <= 0) continue;
     Series series = method_series(curves.method, order);
     fill_rms(curves, component, growth_times(length), series);
     panel.series.push_back(std::move(series));
+    marks.push_back(growth_marks(curves, order, component, length));
   }
+  solid_first(panel.series);
+  panel.series.insert(panel.series.end(), marks.begin(), marks.end());
   return panel;
 }
 
@@ -335,13 +382,209 @@ Panel growth_panel(const DriftCase& drift_case, const MethodOrder& order,
 Figure drift_growth(const DriftCase& drift_case, const MethodOrder& order) {
   Figure figure{
       "drift_growth_" + file_part(drift_case.name), "Growth of the drift", outages_text(drift_case),
-      "RMS over the outages against the time without GNSS. The slope tells the cause: white noise "
+      "RMS over the outages against the time without GNSS, with marks at 10, 20, 30 and 60 s. The "
+      "slope tells the cause: white noise "
       "of the accelerometer grows with t to the power of 1.5, a tilt or accelerometer bias with t "
       "squared, a gyroscope bias (or an Earth rate left out) with t cubed."};
   figure.height_mm = 120;
   figure.columns = 2;
   for (const Component& component : kComponents) {
     figure.panels.push_back(growth_panel(drift_case, order, component));
+  }
+  return figure;
+}
+
+namespace {
+
+constexpr size_t kMostOutagePanels = 12;
+
+/// How far errors over the ground reach to any side.
+double farthest_error(const DriftCase& drift_case, size_t outages) {
+  double farthest = 0;
+  for (const MethodCurves& curves : drift_case.methods) {
+    for (size_t i = 0; i < std::min(outages, curves.outages.size()); ++i) {
+      for (const auto* column : {&curves.outages[i].north_m, &curves.outages[i].east_m}) {
+        for (const double v : *column) {
+          if (std::isfinite(v)) farthest = std::max(farthest, std::abs(v));
+        }
+      }
+    }
+  }
+  return farthest > 0 ? 1.08 * farthest : 1;
+}
+
+Panel error_plane(double reach) {
+  Panel panel;
+  panel.x = {"East error", "m"};
+  panel.y = {"North error", "m"};
+  panel.x.min = panel.y.min = -reach;
+  panel.x.max = panel.y.max = reach;
+  panel.equal_aspect = true;
+  return panel;
+}
+
+Series end_mark(const OutageCurve& curve, const Series& look) {
+  Series mark = look;
+  mark.label.clear();
+  mark.column = look.label + " end";
+  mark.mark = Mark::points;
+  mark.size = 6;
+  if (curve.east_m.empty()) return mark;
+  mark.x = {curve.east_m.back()};
+  mark.y = {curve.north_m.back()};
+  return mark;
+}
+
+Panel outage_error_panel(const DriftCase& drift_case, const MethodOrder& order, size_t outage,
+                         double reach) {
+  Panel panel = error_plane(reach);
+  panel.title = fmt::format("Outage {}", outage + 1);
+  for (const MethodCurves& curves : drift_case.methods) {
+    if (outage >= curves.outages.size()) continue;
+    const OutageCurve& curve = curves.outages[outage];
+    Series path = method_series(curves.method, order);
+    path.column = fmt::format("{} outage {} north error", curves.method, outage + 1);
+    path.x = curve.east_m;
+    path.y = curve.north_m;
+    panel.series.push_back(path);
+    panel.series.push_back(end_mark(curve, path));
+  }
+  return panel;
+}
+
+}  // namespace
+
+Figure outage_errors(const DriftCase& drift_case, const MethodOrder& order) {
+  size_t outages = 0;
+  for (const MethodCurves& c : drift_case.methods) outages = std::max(outages, c.outages.size());
+  const size_t shown = std::min(outages, kMostOutagePanels);
+  Figure figure{"outage_errors_" + file_part(drift_case.name),
+                "The way of the error in single outages", outages_text(drift_case),
+                fmt::format("Estimate minus truth over the ground from the beginning of an outage, "
+                            "in the middle, to its end (mark), all at one scale. {} of {} outages, "
+                            "in order of time.",
+                            shown, outages)};
+  const double reach = farthest_error(drift_case, shown);
+  figure.columns = static_cast<int>(std::clamp<size_t>(shown, 1, 4));
+  figure.height_mm = 30 + 62.0 * std::ceil(static_cast<double>(std::max<size_t>(1, shown)) / 4);
+  for (size_t i = 0; i < shown; ++i) {
+    figure.panels.push_back(outage_error_panel(drift_case, order, i, reach));
+  }
+  return figure;
+}
+
+namespace {
+
+/// Holds 95 % of a Gaussian that spreads as these points do about their mean.
+Series scatter_ellipse(const std::vector<double>& east, const std::vector<double>& north) {
+  const auto count = static_cast<double>(east.size());
+  Eigen::Matrix2Xd points(2, static_cast<Eigen::Index>(east.size()));
+  for (size_t i = 0; i < east.size(); ++i) {
+    points.col(static_cast<Eigen::Index>(i)) << east[i], north[i];
+  }
+  const Eigen::Vector2d mean = points.rowwise().mean();
+  const Eigen::Matrix2Xd rest = points.colwise() - mean;
+  const Eigen::Matrix2d spread = rest * rest.transpose() / (count - 1);
+  const Eigen::Matrix2d root =
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(spread).operatorSqrt();
+  const double chi = std::sqrt(-2 * std::log(0.05));
+  Series ellipse = line("95 % ellipse", Ink::gray, {}, {});
+  ellipse.column = "ellipse north";
+  ellipse.size = 1.6;
+  for (int k = 0; k <= 72; ++k) {
+    const double angle = k * M_PI / 36;
+    const Eigen::Vector2d p =
+        mean + chi * (root * Eigen::Vector2d(std::cos(angle), std::sin(angle)));
+    ellipse.x.push_back(p.x());
+    ellipse.y.push_back(p.y());
+  }
+  return ellipse;
+}
+
+Panel end_error_panel(const MethodCurves& curves, const MethodOrder& order) {
+  Panel panel = error_plane(1);
+  panel.title = curves.method;
+  Series ends = method_series(curves.method, order);
+  ends.label = "end of an outage";
+  ends.in_legend = false;
+  ends.column = curves.method + " end north";
+  ends.mark = Mark::points;
+  ends.size = 5;
+  for (const OutageCurve& curve : curves.outages) {
+    if (curve.east_m.empty()) continue;
+    ends.x.push_back(curve.east_m.back());
+    ends.y.push_back(curve.north_m.back());
+  }
+  if (ends.x.size() >= 3) panel.series.push_back(scatter_ellipse(ends.x, ends.y));
+  panel.series.push_back(std::move(ends));
+  return panel;
+}
+
+/// The same axes for all panels: what the widest of them asks for.
+void share_reach(Figure& figure) {
+  double reach = 0;
+  for (const Panel& panel : figure.panels) {
+    for (const Series& series : panel.series) {
+      for (const auto* column : {&series.x, &series.y}) {
+        for (const double v : *column) reach = std::max(reach, 1.08 * std::abs(v));
+      }
+    }
+  }
+  for (Panel& panel : figure.panels) {
+    for (Axis* axis : {&panel.x, &panel.y}) {
+      axis->min = reach > 0 ? -reach : -1;
+      axis->max = reach > 0 ? reach : 1;
+    }
+  }
+}
+
+}  // namespace
+
+Figure end_errors(const DriftCase& drift_case, const MethodOrder& order) {
+  Figure figure{"end_errors_" + file_part(drift_case.name), "Errors at the end of the outages",
+                outages_text(drift_case),
+                "Estimate minus truth over the ground at the last epoch of each outage, and the "
+                "ellipse that holds 95 % of a Gaussian with their mean and spread. A mean that is "
+                "far from zero is an error that all outages have."};
+  figure.columns = std::max(1, static_cast<int>(std::min<size_t>(3, drift_case.methods.size())));
+  const double rows = std::ceil(static_cast<double>(drift_case.methods.size()) / figure.columns);
+  figure.height_mm = 30 + 85 * std::max(1.0, rows);
+  for (const MethodCurves& curves : drift_case.methods) {
+    figure.panels.push_back(end_error_panel(curves, order));
+  }
+  share_reach(figure);
+  return figure;
+}
+
+Figure ablation_bars(const std::vector<AblationBar>& bars, const MethodOrder& order) {
+  Figure figure{"ablation",
+                "What each part is worth",
+                {},
+                "RMS over the outages of the largest drift in each, with everything in use and "
+                "without one part. A part without which the drift grows is worth having."};
+  figure.height_mm = 150;
+  figure.share_x = true;
+  for (const auto& [label, number] : {std::pair{"Horizontal RMS", &AblationBar::horizontal_m},
+                                      std::pair{"Vertical RMS", &AblationBar::vertical_m}}) {
+    Panel panel;
+    panel.x = {"", "", AxisKind::category};
+    panel.y = {label, "m"};
+    panel.y.from_zero = true;
+    std::map<std::string, Series> by_method;
+    for (const AblationBar& bar : bars) {
+      const std::string name = bar.without.empty() ? "as it is" : "without " + bar.without;
+      auto& names = panel.x.categories;
+      auto place = std::find(names.begin(), names.end(), name);
+      if (place == names.end()) place = names.insert(names.end(), name);
+      Series& series =
+          by_method.try_emplace(bar.method, method_series(bar.method, order)).first->second;
+      series.mark = Mark::bars;
+      series.value_labels = true;
+      series.x.push_back(static_cast<double>(place - names.begin()));
+      series.y.push_back(bar.*number);
+    }
+    for (auto& [method, series] : by_method) panel.series.push_back(std::move(series));
+    figure.panels.push_back(std::move(panel));
   }
   return figure;
 }
@@ -425,7 +668,7 @@ Series bins_by_distance(const DistanceDrift::Method& method, DistanceNumber numb
   series.column = method.method + " interval";
   series.mark = Mark::points;
   series.size = 6;
-  series.dashed = false;
+  series.dash = Dash::none;
   for (const DistanceDrift::Bin& bin : method.bins) {
     const Bounded& rms = bin.*number;
     series.x.push_back(bin.distance_km + shift);
@@ -567,13 +810,13 @@ Figure error_timeline(const ErrorTimeline& timeline, const MethodOrder& order) {
   for (const ErrorTimeline::Curve& curve : timeline.curves) {
     Series series = method_series(curve.method, order);
     series.size = std::max(0.9, 2.3 - 0.6 * static_cast<double>(panel.series.size()));
-    series.dashed = false;
     series.x = curve.t_s;
     series.y = curve.horizontal_m;
     panel.series.push_back(std::move(series));
   }
+  solid_first(panel.series);
   Figure figure{"error_timeline_" + file_part(timeline.name), "Horizontal error over time",
-                timeline.name,
+                timeline.subtitle,
                 "Horizontal position error on a logarithmic axis. It rises during outages and has "
                 "to fall back at once with the first fixes after."};
   figure.height_mm = 120;
@@ -595,8 +838,8 @@ Series path_series(const GroundPath& path, const std::string& label, Ink ink, do
 
 Figure outage_map(const OutageMap& map, const MethodOrder& order) {
   Panel panel;
-  panel.x = {"East of the start", "m"};
-  panel.y = {"North of the start", "m"};
+  panel.x = {"East of the first estimate", "m"};
+  panel.y = {"North of the first estimate", "m"};
   panel.x.least_span = panel.y.least_span = 1;
   panel.equal_aspect = true;
   panel.scale_bar = true;
@@ -605,11 +848,11 @@ Figure outage_map(const OutageMap& map, const MethodOrder& order) {
   for (const OutageMap::Estimate& estimate : map.estimates) {
     const Series look = method_series(estimate.method, order);
     panel.series.push_back(path_series(estimate.path, estimate.method, look.ink, 1.6));
-    panel.series.back().dashed = look.dashed;
+    panel.series.back().dash = look.dash;
   }
   choose_map_unit(panel);
   Figure figure{
-      "outage_map_" + file_part(map.name), "Ground track with outages", map.name,
+      "outage_map_" + file_part(map.name), "Ground track with outages", map.subtitle,
       "The true path (grey, black where GNSS was withheld) and the estimates during outages. The "
       "distance between black and coloured line at the end of an outage is its drift."};
   figure.height_mm = 190;

@@ -13,14 +13,18 @@ Section overview(const EvaluationReport& report) {
   Section section{"Overview"};
   section.paragraphs = report.remarks;
   section.tables = report.tables;
+  if (!report.ablation.empty()) {
+    section.figures.push_back(ablation_bars(report.ablation, report.methods));
+  }
   if (!report.rms.empty()) section.figures.push_back(drift_bars(report.rms, report.methods));
   return section;
 }
 
 Section case_section(const DriftCase& drift_case, const MethodOrder& order) {
   Section section{drift_case.name};
-  section.figures = {drift_curves(drift_case, order), maximum_drifts(drift_case, order),
-                     drift_distribution(drift_case, order), drift_growth(drift_case, order)};
+  section.figures = {drift_curves(drift_case, order),       maximum_drifts(drift_case, order),
+                     drift_distribution(drift_case, order), drift_growth(drift_case, order),
+                     outage_errors(drift_case, order),      end_errors(drift_case, order)};
   return section;
 }
 

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "foucault/content/laboratory_report.h"
+#include "method_look.h"
 #include "series.h"
 
 namespace foucault::content {
@@ -53,21 +54,15 @@ Series curve_line(const LabCurve& curve, LabQuantity quantity) {
 /// The methods in the colours that evaluations give them.
 Series model_line(const LabCurve& curve, LabQuantity quantity) {
   Series series = curve_line(curve, quantity);
-  series.dashed = curve.local;
+  series.ink = look_of(curve.key).ink;
+  series.dash = curve.local ? Dash::dashes : Dash::none;
   series.size = curve.local ? 1.6 : 1.8;
-  if (curve.key == "rough") {
-    series.ink = Ink::green;
-    series.size = curve.local ? 1.6 : 3.2;
-  }
-  if (curve.key == "refined") series.ink = Ink::vermillion;
-  if (curve.key == "full") {
-    series.ink = Ink::purple;
-    series.size = 4;
-  }
+  if (curve.key == "rough" && !curve.local) series.size = 3.2;
+  if (curve.key == "full") series.size = 4;
   if (curve.key == "discretization") {
     series.ink = Ink::black;
     series.size = 1.3;
-    series.dashed = true;
+    series.dash = Dash::dashes;
   }
   return series;
 }
@@ -96,7 +91,7 @@ Series noise_line(const LabCurve& noise, LabQuantity quantity, bool dashed) {
   series.label = "noise of " + noise.title;
   series.ink = Ink::gray;
   series.size = 1.1;
-  series.dashed = dashed;
+  series.dash = dashed ? Dash::dashes : Dash::none;
   return series;
 }
 
@@ -338,7 +333,7 @@ Panel rate_panel(const std::vector<LabMotionCurves>& motions, const LabSettings&
   for (std::size_t m = 0; m < motions.size(); ++m) {
     for (std::size_t i = 0; i < motions[m].rates.size(); ++i) {
       Series series = motion_line(motions[m].rates[i], quantity, m);
-      series.dashed = i != kWithMark;
+      if (i != kWithMark) series.dash = Dash::dashes;
       if (i > 1) series.ink = Ink::purple;
       panel.series.push_back(series);
     }
@@ -382,7 +377,7 @@ Panel origin_panel(const std::vector<LabMotionCurves>& motions, const LabSetting
     Series series = motion_line(motions[m].distances[curve], kQuantity, m);
     series.label = motions[m].title;
     series.column = fmt::format("{} {}", motions[m].title, seconds_text(duration_s));
-    series.dashed = m % 2 == 1;
+    if (m % 2 == 1) series.dash = Dash::dashes;
     panel.series.push_back(series);
   }
   return panel;

@@ -1,9 +1,12 @@
 #include "run_data.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <limits>
+#include <string_view>
 #include <utility>
+#include <variant>
 
 #include "foucault/core/constants.h"
 #include "foucault/core/so3.h"
@@ -43,6 +46,17 @@ Eigen::VectorXd slow_sigmas(const state::Epoch& epoch, const state::SlowBlock& s
   return state::part(epoch.covariance.diagonal(), slow).cwiseMax(0).cwiseSqrt();
 }
 
+/// Notices are words: the length of a gap stands in them, "... for 1.480 s ..." [s]; zero if not.
+double told_length(const std::string& text) {
+  constexpr std::string_view kBefore = " for ";
+  const size_t at = text.find(kBefore);
+  if (at == std::string::npos) return 0;
+  double length = 0;
+  const char* const begin = text.data() + at + kBefore.size();
+  const auto [end, error] = std::from_chars(begin, text.data() + text.size(), length);
+  return error == std::errc() && std::string_view(end).substr(0, 2) == " s" ? length : 0;
+}
+
 std::vector<double> six(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return {a.x(), a.y(), a.z(), b.x(), b.y(), b.z()};
 }
@@ -51,9 +65,40 @@ std::vector<double> six(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
 
 void AxisStatistics::add(const Eigen::Vector3d& value, const Eigen::Vector3d& sigma) {
   if (!value.allFinite()) return;
+  keep(value.cwiseAbs());
   ++count_;
+  sum_ += value.array();
+  largest_ = largest_.max(value.array().abs());
   sum_of_squares_ += value.array().square();
   inside_ += (value.array().abs() <= 3 * sigma.array()).cast<double>();
+}
+
+void AxisStatistics::keep(const Eigen::Vector3d& magnitude) {
+  constexpr size_t kMost = 20000;
+  if (count_ % every_ != 0) return;
+  kept_.push_back(magnitude);
+  if (kept_.size() < kMost) return;
+  for (size_t i = 0; 2 * i < kept_.size(); ++i) kept_[i] = kept_[2 * i];
+  kept_.resize((kept_.size() + 1) / 2);
+  every_ *= 2;
+}
+
+Eigen::Vector3d AxisStatistics::mean() const {
+  return sum_ / std::max<double>(1, static_cast<double>(count_));
+}
+
+Eigen::Vector3d AxisStatistics::quantile(double share) const {
+  Eigen::Vector3d result = Eigen::Vector3d::Zero();
+  if (kept_.empty()) return result;
+  const auto place = static_cast<std::ptrdiff_t>(share * static_cast<double>(kept_.size() - 1));
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    std::vector<double> values;
+    values.reserve(kept_.size());
+    for (const Eigen::Vector3d& each : kept_) values.push_back(each[axis]);
+    std::nth_element(values.begin(), values.begin() + place, values.end());
+    result[axis] = values[static_cast<size_t>(place)];
+  }
+  return result;
 }
 
 Eigen::Vector3d AxisStatistics::rms() const {
@@ -156,6 +201,27 @@ double StepWatch::rate() const {
 
 std::vector<Interval> StepWatch::longest_gaps() const { return gaps_; }
 
+void IntervalHistogram::add(double interval) {
+  if (!(interval > 0)) return;
+  const double bin = std::floor(kPerDecade * std::log10(interval / kShortest));
+  const double last = static_cast<double>(counts_.size() - 1);
+  ++counts_[static_cast<size_t>(std::clamp(bin, 0.0, last))];
+}
+
+IntervalHistogram::Bins IntervalHistogram::bins() const {
+  const auto filled = [](int64_t count) { return count > 0; };
+  const auto first = std::find_if(counts_.begin(), counts_.end(), filled);
+  const auto last = std::find_if(counts_.rbegin(), counts_.rend(), filled).base();
+  Bins bins;
+  if (first == counts_.end()) return bins;
+  bins.count.assign(first, last);
+  const auto from = static_cast<double>(first - counts_.begin());
+  for (size_t i = 0; i <= bins.count.size(); ++i) {
+    bins.corner.push_back(kShortest * std::pow(10, (from + static_cast<double>(i)) / kPerDecade));
+  }
+  return bins;
+}
+
 Eigen::Vector3d StartPlane::north_east_up(const Geodetic& place) const {
   const double middle = (start_.latitude + place.latitude) / 2;
   const double meridian = geodesy::wgs84::meridian_radius(middle);
@@ -195,6 +261,7 @@ Eigen::Vector3d RunData::place(const Geodetic& geodetic) {
 
 void RunData::mark_gap() {
   track.add_gap();
+  speed_and_height.add_gap();
   for (Triad* triad : {&position, &velocity, &attitude, &vehicle_velocity, &gyro_bias, &accel_bias,
                        &position_error, &velocity_error, &attitude_error}) {
     triad->rows.add_gap();
@@ -211,6 +278,7 @@ void RunData::add(const state::Epoch& epoch) {
   const Eigen::Vector3d p = place(epoch.position);
   track.add(t, {p.x(), p.y()});
   position.add(t, p, epoch.sigma_of(state::block::position));
+  speed_and_height.add(t, {epoch.velocity_n.norm(), epoch.position.height});
   velocity.add(t, epoch.velocity_n, epoch.sigma_of(state::block::velocity));
   gyro_bias.add(t, kDegreesPerHour * epoch.bias.gyro,
                 kDegreesPerHour * epoch.sigma_of(state::block::gyro_bias));
@@ -252,6 +320,7 @@ void RunData::add(const state::FixResult& fix) {
   ++verdicts[fix.verdict];
   watch_verdict(t, fix.verdict);
   fix_types.add(t, {static_cast<double>(fix.quality), used ? 0.0 : 1.0});
+  if (!plane_) origin_ = "first fix";
   const Eigen::Vector3d p = place(fix.antenna);
   const Eigen::Vector3d sigma = sigma_of(fix.innovation_covariance);
   if (used) {
@@ -316,6 +385,57 @@ void RunData::add(const state::Epoch& epoch, const state::ReferenceError& error)
     attitude_error.add(t, kDegrees * *error.euler,
                        kDegrees * vehicle_attitude(epoch, mounting_).sigma);
   }
+}
+
+void RunData::add(const Measurement& measurement) {
+  if (const auto* fix = std::get_if<GnssFix>(&measurement)) add_fix(*fix);
+  if (const auto* increment = std::get_if<ImuIncrement>(&measurement)) add_increment(*increment);
+}
+
+void RunData::add_fix(const GnssFix& fix) {
+  const double t = seconds(fix.t_ns);
+  const Eigen::Vector3d sigma = sigma_of(fix.position_covariance);
+  fix_sigmas.add(t, {sigma.x(), sigma.y(), sigma.z()});
+  const FixDetails& told = fix.details;
+  if (!told.satellites && !told.hdop && !told.correction_age) return;
+  fix_details.add(t, {told.satellites ? *told.satellites : kNaN, told.hdop.value_or(kNaN),
+                      told.correction_age.value_or(kNaN)});
+}
+
+void RunData::add_increment(const ImuIncrement& increment) {
+  add_imu_stamp(increment.t_end_ns);
+  const double dt = increment.dt();
+  if (!(dt > 0)) return;
+  const double t = seconds(increment.t_end_ns);
+  ImuSpectrum::Sample rates;
+  rates << kDegrees / dt * increment.dtheta_b, increment.dvel_b / dt;
+  if (imu_steps.last_was_gap()) imu_rates.add_gap();
+  imu_rates.add(t, {rates.begin(), rates.end()});
+  const double step = last_imu_ ? t - *last_imu_ : dt;
+  if (last_imu_) imu_intervals.add(step);
+  imu_spectrum.add(step, rates);
+  last_imu_ = t;
+}
+
+ImuGaps RunData::imu_gaps() const {
+  ImuGaps gaps{imu_steps.longest_gaps(), imu_steps.gaps(), imu_steps.gap_duration()};
+  for (const state::Notice& notice : notices) {
+    if (notice.kind != state::NoticeKind::imu_gap) continue;
+    const double length = told_length(notice.text);
+    if (!(length > 0)) continue;
+    const double end = seconds_between(start_ns_.value_or(notice.t_ns), notice.t_ns);
+    const Interval told{end - length, end};
+    const bool known = std::any_of(
+        gaps.longest.begin(), gaps.longest.end(),
+        [&](const Interval& gap) { return gap.begin < told.end && told.begin < gap.end; });
+    if (known) continue;
+    gaps.longest.push_back(told);
+    ++gaps.count;
+    gaps.duration += told.length();
+  }
+  std::sort(gaps.longest.begin(), gaps.longest.end(),
+            [](const Interval& a, const Interval& b) { return a.begin < b.begin; });
+  return gaps;
 }
 
 void RunData::add_imu_stamp(int64_t t_ns) { imu_steps.observe(seconds(t_ns)); }

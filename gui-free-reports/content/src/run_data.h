@@ -10,25 +10,37 @@
 #include <vector>
 
 #include "foucault/core/consistency.h"
+#include "foucault/core/measurement.h"
 #include "foucault/plot/decimation.h"
 #include "foucault/state/interfaces.h"
 #include "foucault/state/result.h"
 #include "foucault/state/told_blocks.h"
+#include "imu_spectrum.h"
 
 /// What a run report keeps of a run, in bounded memory. Times in seconds since the first stamp.
 namespace foucault::content {
 
-/// Root mean square and share inside three sigma, by axis.
+/// What numbers amount to, by axis, and how many are inside three sigma. Quantiles are of the
+/// magnitudes: of all of them, of very many of every second, fourth ... one.
 class AxisStatistics {
  public:
   void add(const Eigen::Vector3d& value, const Eigen::Vector3d& sigma);
 
   size_t count() const { return count_; }
+  Eigen::Vector3d mean() const;
+  Eigen::Vector3d largest() const { return largest_; }
+  Eigen::Vector3d quantile(double share) const;
   Eigen::Vector3d rms() const;
   Eigen::Vector3d inside_3_sigma() const;  ///< 0 to 1
 
  private:
+  void keep(const Eigen::Vector3d& magnitude);
+
   size_t count_ = 0;
+  size_t every_ = 1;
+  std::vector<Eigen::Vector3d> kept_;
+  Eigen::Array3d sum_ = Eigen::Array3d::Zero();
+  Eigen::Array3d largest_ = Eigen::Array3d::Zero();
   Eigen::Array3d sum_of_squares_ = Eigen::Array3d::Zero();
   Eigen::Array3d inside_ = Eigen::Array3d::Zero();
 };
@@ -127,6 +139,30 @@ class StepWatch {
   plot::DecimatedTable steps_{1};
 };
 
+/// How often intervals of a length occur, by bins that are evenly spaced on a logarithmic axis.
+class IntervalHistogram {
+ public:
+  void add(double interval);
+  /// Corners of the bins from the first to the last that is not empty, and what each holds.
+  struct Bins {
+    std::vector<double> corner;  ///< one more than counts
+    std::vector<int64_t> count;
+  };
+  Bins bins() const;
+
+ private:
+  static constexpr double kShortest = 1e-5;  // [s]
+  static constexpr double kPerDecade = 100;
+  std::array<int64_t, 700> counts_{};
+};
+
+/// Holes in the samples of an IMU, whether they were missing or left out.
+struct ImuGaps {
+  std::vector<Interval> longest;  ///< in order of time
+  size_t count = 0;
+  double duration = 0;
+};
+
 /// North and east of a start point along the ellipsoid, and height above it [m]. For drawing: the
 /// radii of curvature are those of the middle latitude, good to 1e-5 within 100 km.
 class StartPlane {
@@ -149,29 +185,41 @@ class RunData {
   void add(const state::FixResult& fix);
   void add(const state::ObservationResult& result);
   void add(const state::Notice& notice);
+  /// What sensors told, before anything is made of it.
+  void add(const Measurement& measurement);
   void add(const state::Epoch& epoch, const state::ReferenceError& error);
   void add(const NormalizedSquare& square);
   void add_imu_stamp(int64_t t_ns);
   void add_outage(int64_t begin_ns, int64_t end_ns);
 
-  /// The first stamp of a measurement or an epoch.
+  /// Times count from here on; without it, from the first stamp of a measurement or an epoch.
+  void start(int64_t t_ns) { start_ns_ = t_ns; }
   std::optional<int64_t> start_ns() const { return start_ns_; }
+  /// What north, east and height are relative to: "first fix" or "first epoch".
+  const char* origin() const { return origin_; }
 
-  plot::DecimatedTable track{2};            ///< north, east
-  plot::DecimatedTable fix_places{3};       ///< north, east, quality; used fixes
-  plot::DecimatedTable rejected_places{2};  ///< north, east
-  Triad position;                           ///< north, east, up of the start [m]
-  Triad velocity;                           ///< north, east, down [m/s]
-  Triad vehicle_velocity;                   ///< forward, right, down [m/s]
-  Triad attitude;                           ///< roll, pitch, heading (continuous) [deg]
-  Triad gyro_bias;                          ///< x, y, z of b [deg/h]
-  Triad accel_bias;                         ///< x, y, z of b [mGal]
-  Triad position_error;                     ///< north, east, down [m]
-  Triad velocity_error;                     ///< north, east, down [m/s]
-  Triad attitude_error;                     ///< roll, pitch, heading [deg]
-  Triad innovation;                         ///< used fixes, north, east, down [m]
-  Triad rejected_innovation;                ///< as innovation
-  Triad postfit;                            ///< used fixes; sigma not known
+  plot::DecimatedTable track{2};             ///< north, east
+  plot::DecimatedTable fix_places{3};        ///< north, east, quality; used fixes
+  plot::DecimatedTable rejected_places{2};   ///< north, east
+  plot::DecimatedTable speed_and_height{2};  ///< [m/s], above the ellipsoid [m]
+  plot::DecimatedTable imu_rates{6, 4000};   ///< of b, not corrected [deg/s, m/s^2]
+  ImuSpectrum imu_spectrum;                  ///< of the same
+  IntervalHistogram imu_intervals;
+  plot::DecimatedTable fix_sigmas{3};   ///< that the receiver gives: north, east, down [m]
+  plot::DecimatedTable fix_details{3};  ///< satellites, HDOP, age of corrections [s]; NaN: not told
+  ImuGaps imu_gaps() const;
+  Triad position;             ///< north, east, up of the start [m]
+  Triad velocity;             ///< north, east, down [m/s]
+  Triad vehicle_velocity;     ///< forward, right, down [m/s]
+  Triad attitude;             ///< roll, pitch, heading (continuous) [deg]
+  Triad gyro_bias;            ///< x, y, z of b [deg/h]
+  Triad accel_bias;           ///< x, y, z of b [mGal]
+  Triad position_error;       ///< north, east, down [m]
+  Triad velocity_error;       ///< north, east, down [m/s]
+  Triad attitude_error;       ///< roll, pitch, heading [deg]
+  Triad innovation;           ///< used fixes, north, east, down [m]
+  Triad rejected_innovation;  ///< as innovation
+  Triad postfit;              ///< used fixes; sigma not known
   std::vector<BlockHistory> blocks;
   std::map<std::string, SquareHistory, std::less<>> aids;
   plot::DecimatedTable fix_types{2};  ///< quality, rejected (0 or 1)
@@ -202,6 +250,8 @@ class RunData {
   double seconds(int64_t t_ns);
   Eigen::Vector3d place(const Geodetic& geodetic);
   void mark_gap();
+  void add_fix(const GnssFix& fix);
+  void add_increment(const ImuIncrement& increment);
   void add_blocks(double t, const state::Epoch& epoch);
   void watch_verdict(double t, state::FixVerdict verdict);
 
@@ -211,8 +261,10 @@ class RunData {
   std::vector<Stretch> outages_;
   std::optional<int64_t> start_ns_;
   std::optional<StartPlane> plane_;
+  const char* origin_ = "first epoch";
   StepWatch all_fix_steps_{4.0};
   std::optional<state::FixVerdict> last_verdict_;
+  std::optional<double> last_imu_;      // [s]
   double last_fix_ = 0;                 // [s], whatever became of it
   std::optional<double> last_heading_;  // [rad], continuous
 };

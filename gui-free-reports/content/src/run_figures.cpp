@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <string_view>
 #include <utility>
 
 #include "foucault/core/fix_quality.h"
@@ -20,32 +19,9 @@ using namespace plot;
 
 namespace {
 
-constexpr Names kEuler{"Roll", "Pitch", "Heading"};
+constexpr const char* kHeading = "Heading";
+constexpr Names kEuler{"Roll", "Pitch", kHeading};
 constexpr Names kXyz{"x axis", "y axis", "z axis"};
-constexpr std::array<Ink, 3> kAxisInks{Ink::blue, Ink::vermillion, Ink::green};
-
-double largest_shown(const Figure& figure) {
-  double largest = 0;
-  for (const Panel& panel : figure.panels) {
-    const Span span = y_span(panel);
-    largest = std::max({largest, std::abs(span.min), std::abs(span.max)});
-  }
-  return largest;
-}
-
-/// Shows lengths [m] in cm or km where that reads better; the numbers stay in metres.
-void choose_length_unit(Figure& figure) {
-  const double largest = largest_shown(figure);
-  for (Panel& panel : figure.panels) {
-    if (largest < 0.5) {
-      panel.y.shown_unit = "cm";
-      panel.y.shown_factor = 100;
-    } else if (largest > 5000) {
-      panel.y.shown_unit = "km";
-      panel.y.shown_factor = 1e-3;
-    }
-  }
-}
 
 std::string column_name(const char* axis, const std::string& noun) {
   return std::string(axis) + " " + noun;
@@ -89,9 +65,9 @@ struct TriadFigure {
 constexpr std::array<TriadFigure, 3> kSolution{{
     {&RunData::position,
      "position",
-     "Position relative to the start",
-     "North, east and height of the IMU with 3-sigma bounds (see the uncertainty figure where "
-     "they are too narrow to be seen). Jumps at fixes after a gap are drift being corrected.",
+     "Position",
+     "North, east and height of the IMU with 3-sigma bounds, given in numbers "
+     "where they are too narrow to be seen. Jumps at fixes after a gap are drift being corrected.",
      "position",
      "m",
      {"North", "East", "Height"},
@@ -102,7 +78,7 @@ constexpr std::array<TriadFigure, 3> kSolution{{
      "velocity", "m/s", kNed, 0.1},
     {&RunData::attitude, "attitude", "Attitude of the vehicle",
      "Roll, pitch and heading of the vehicle with 3-sigma bounds; the "
-     "heading is drawn without jumps at 360°. Heading is learnt while "
+     "line of the heading is broken where it passes north. Heading is learnt while "
      "the vehicle accelerates and turns, so its bounds narrow then.",
      "angle", "°", kEuler, 0.5},
 }};
@@ -147,25 +123,75 @@ constexpr std::array<TriadFigure, 2> kBiases{{
      "bias", "mGal", kXyz, 10},
 }};
 
+/// One number over time with its sigma.
+struct Curve {
+  std::vector<double> t, value, sigma;
+
+  void add(double at, double number, double deviation) {
+    t.push_back(at);
+    value.push_back(number);
+    sigma.push_back(deviation);
+  }
+};
+
+/// From the place of one number to the next, over north: to that end of 0 to 360, and on from the
+/// other one.
+void pass_north(const Curve& angle, size_t i, Curve& result) {
+  const double from = angle.value[i - 1];
+  const double to = angle.value[i];
+  const double north = 360 * std::max(std::floor(from / 360), std::floor(to / 360));
+  const double at = angle.t[i - 1] + (angle.t[i] - angle.t[i - 1]) * (north - from) / (to - from);
+  result.add(at, to > from ? 360 : 0, angle.sigma[i]);
+  result.add(at, kNoValue, kNoValue);
+  result.add(at, to > from ? 0 : 360, angle.sigma[i]);
+}
+
+/// A continuous angle [deg] as 0 to 360.
+Curve on_circle(const Curve& angle) {
+  Curve result;
+  for (size_t i = 0; i < angle.t.size(); ++i) {
+    const double turns = std::floor(angle.value[i] / 360);
+    const bool passes = i > 0 && std::isfinite(turns) && std::isfinite(angle.value[i - 1]) &&
+                        std::floor(angle.value[i - 1] / 360) != turns;
+    if (passes) pass_north(angle, i, result);
+    result.add(angle.t[i], angle.value[i] - 360 * turns, angle.sigma[i]);
+  }
+  return result;
+}
+
+void show_bearing(const Curve& curve, size_t continuous, Axis& axis) {
+  axis.kind = AxisKind::bearing;
+  if (curve.t.size() == continuous) return;  // never over north
+  axis.min = 0;
+  axis.max = 360;
+}
+
+Panel triad_panel(const RunData& data, const TriadFigure& look, const DecimatedTable::Rows& rows,
+                  size_t axis) {
+  Curve curve{rows.x, rows.columns[axis], rows.columns[axis + 3]};
+  Panel panel = time_panel(data, {look.axes[axis], look.unit});
+  if (look.axes[axis] == kHeading && !look.is_error) {
+    curve = on_circle(curve);
+    show_bearing(curve, rows.x.size(), panel.y);
+  }
+  const std::string column = column_name(look.axes[axis], look.noun);
+  const std::vector<double> zero(curve.t.size(), 0);
+  panel.y.zero_centred = look.is_error;
+  panel.y.least_span = look.least_span;
+  panel.series = {
+      bounds(curve.t, look.is_error ? zero : curve.value, curve.sigma, column + " 3 sigma"),
+      line(look.is_error ? "error" : "estimate", Ink::blue, curve.t, curve.value)};
+  panel.series.back().column = column;
+  return panel;
+}
+
 Figure triad_figure(const RunData& data, const TriadFigure& look, const std::string& subtitle) {
   const Triad& triad = data.*look.triad;
   const DecimatedTable::Rows rows = triad.rows.rows();
-  const std::vector<double> zero(rows.x.size(), 0);
   Figure figure = stacked_figure(look.name, look.title, subtitle, look.caption);
-  for (size_t i = 0; i < 3; ++i) {
-    const std::string column = column_name(look.axes[i], look.noun);
-    Panel panel = time_panel(data, {look.axes[i], look.unit});
-    panel.y.zero_centred = look.is_error;
-    panel.y.least_span = look.least_span;
-    panel.series = {bounds(rows.x, look.is_error ? zero : rows.columns[i], rows.columns[i + 3],
-                           column + " 3 sigma"),
-                    line(look.is_error ? "error" : "estimate", Ink::blue, rows.x, rows.columns[i])};
-    panel.series.back().column = column;
-    figure.panels.push_back(std::move(panel));
-  }
-  if (!look.is_error) return figure;
-  if (look.unit == std::string_view("m")) choose_length_unit(figure);
-  add_notes(triad, figure);
+  for (size_t i = 0; i < 3; ++i) figure.panels.push_back(triad_panel(data, look, rows, i));
+  if (look.is_error) add_notes(triad, figure);
+  for (size_t i = 0; i < 3; ++i) tell_narrow_bounds(rows.columns[i + 3], figure.panels[i]);
   return figure;
 }
 
@@ -253,8 +279,8 @@ double track_height(const Panel& panel) {
 std::optional<Figure> ground_track(const RunData& data, const std::string& subtitle) {
   if (data.track.empty() && data.fix_places.empty()) return std::nullopt;
   Panel panel;
-  panel.x = {"East of the start", "m"};
-  panel.y = {"North of the start", "m"};
+  panel.x = {fmt::format("East of the {}", data.origin()), "m"};
+  panel.y = {fmt::format("North of the {}", data.origin()), "m"};
   panel.x.least_span = panel.y.least_span = 1;
   panel.equal_aspect = true;
   panel.scale_bar = true;
@@ -262,6 +288,7 @@ std::optional<Figure> ground_track(const RunData& data, const std::string& subti
   const DecimatedTable::Rows track = data.track.rows();
   Series estimate = line("estimate", Ink::sky, track.columns[1], track.columns[0]);
   estimate.column = "estimate north";
+  estimate.time = track.x;
   estimate.size = 4;
   estimate.opacity = 0.6;
   panel.series.push_back(estimate);
@@ -295,8 +322,9 @@ Panel sigma_panel(const RunData& data, const Triad& triad, const std::string& la
   panel.y.kind = AxisKind::log;
   panel.legend = LegendPlace::panel;
   for (size_t i = 0; i < 3; ++i) {
-    panel.series.push_back(line(axes[i], kAxisInks[i], rows.x, rows.columns[i + 3]));
+    panel.series.push_back(line(axes[i], kTriadInks[i], rows.x, rows.columns[i + 3]));
     panel.series.back().column = label + " sigma " + axes[i];
+    panel.series.back().dash = kTriadDashes[i];
   }
   return panel;
 }
@@ -322,6 +350,7 @@ Figure uncertainty_figure(const RunData& data, const std::string& subtitle) {
 
 std::vector<Figure> solution_figures(const RunData& data, const std::string& subtitle) {
   std::vector<Figure> figures = triad_figures(data, kSolution, subtitle);
+  if (!data.position.empty()) figures.front().title += fmt::format(" from the {}", data.origin());
   if (!data.position.empty()) figures.push_back(uncertainty_figure(data, subtitle));
   return figures;
 }
@@ -380,7 +409,6 @@ std::optional<Figure> innovation_figure(const RunData& data, const std::string& 
   for (size_t axis = 0; axis < 3; ++axis) {
     figure.panels.push_back(innovation_panel(data, used, rejected, axis));
   }
-  choose_length_unit(figure);
   add_notes(data.innovation, figure);
   return figure;
 }
@@ -401,7 +429,6 @@ std::optional<Figure> postfit_figure(const RunData& data, const std::string& sub
     panel.series.back().in_legend = false;
     figure.panels.push_back(std::move(panel));
   }
-  choose_length_unit(figure);
   for (size_t i = 0; i < 3; ++i) {
     const Axis& y = figure.panels[i].y;
     figure.panels[i].note =
@@ -415,16 +442,17 @@ std::optional<Figure> postfit_figure(const RunData& data, const std::string& sub
 
 namespace {
 
-Panel step_panel(const RunData& data, const StepWatch& watch, const std::string& label, Ink ink) {
+/// `gaps`: how many there are, of samples that were left out, too.
+Panel step_panel(const RunData& data, const StepWatch& watch, size_t gaps,
+                 const std::string& label) {
   Panel panel = time_panel(data, {label, "s"});
   const DecimatedTable::Rows rows = watch.steps().rows();
-  panel.series.push_back(line(label, ink, rows.x, rows.columns[0]));
+  panel.series.push_back(line(label, Ink::blue, rows.x, rows.columns[0]));
   panel.series.back().mark = Mark::steps;
   panel.series.back().size = 0.9;
   panel.series.back().in_legend = false;
-  panel.note =
-      fmt::format("{} Hz · longest {} s · {} gap{}", significant_text(watch.rate()),
-                  significant_text(watch.longest()), watch.gaps(), watch.gaps() == 1 ? "" : "s");
+  panel.note = fmt::format("{} Hz · longest {} s · {} gap{}", significant_text(watch.rate()),
+                           significant_text(watch.longest()), gaps, gaps == 1 ? "" : "s");
   if (watch.longest() * watch.rate() > 20) {
     panel.y.kind = AxisKind::log;
   } else if (watch.longest() < 0.5) {
@@ -477,10 +505,12 @@ std::optional<Figure> data_health_figure(const RunData& data, const std::string&
       "Time between IMU samples, time between GNSS fixes that were used, and fix types over time. "
       "Healthy intervals lie on one level; every gap stands out above it.");
   if (data.imu_steps.stamps() > 1) {
-    figure.panels.push_back(step_panel(data, data.imu_steps, "IMU interval", Ink::blue));
+    figure.panels.push_back(
+        step_panel(data, data.imu_steps, data.imu_gaps().count, "IMU interval"));
   }
   if (data.fix_steps.stamps() > 1) {
-    figure.panels.push_back(step_panel(data, data.fix_steps, "Used-fix interval", Ink::blue));
+    figure.panels.push_back(
+        step_panel(data, data.fix_steps, data.fix_steps.gaps(), "Used-fix interval"));
   }
   if (!data.fix_types.empty()) {
     figure.panels.push_back(type_panel(data));

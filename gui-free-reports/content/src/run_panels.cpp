@@ -4,8 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
+#include "foucault/core/time.h"
+#include "foucault/plot/axis_scale.h"
 #include "foucault/plot/text.h"
 
 namespace foucault::content {
@@ -14,6 +17,7 @@ using namespace plot;
 
 namespace {
 
+constexpr double kTimeMargin = 0.01;    // of the run
 constexpr double kStackedHeight = 172;  // [mm], of three panels above each other
 
 bool overlaps(const Interval& a, const std::vector<Interval>& others) {
@@ -22,6 +26,28 @@ bool overlaps(const Interval& a, const std::vector<Interval>& others) {
 }
 
 }  // namespace
+
+std::string clock_text(int64_t t_ns) {
+  const GpsTime gps = unix_to_gps(t_ns);
+  return fmt::format("{}, GPS week {} {:.3f} s", utc_text(t_ns), gps.week,
+                     static_cast<double>(gps.tow_ns) * 1e-9);
+}
+
+Interval whole_run(const RunData& data) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  Interval whole{kInfinity, -kInfinity};
+  const auto add = [&whole](double begin, double end) {
+    whole.begin = std::min(whole.begin, begin);
+    whole.end = std::max(whole.end, end);
+  };
+  for (const StepWatch* watch : {&data.imu_steps, &data.epoch_steps}) {
+    if (watch->stamps() > 0) add(watch->first(), watch->last());
+  }
+  for (const auto& [verdict, stretches] : data.verdict_stretches) {
+    for (const Interval& interval : stretches.intervals()) add(interval.begin, interval.end);
+  }
+  return whole;
+}
 
 std::vector<Shade> time_shades(const RunData& data) {
   std::vector<Shade> shades;
@@ -33,7 +59,7 @@ std::vector<Shade> time_shades(const RunData& data) {
     if (overlaps(gap, outages)) continue;
     shades.push_back({gap.begin, gap.end, "no usable GNSS", Ink::orange});
   }
-  for (const Interval& gap : data.imu_steps.longest_gaps()) {
+  for (const Interval& gap : data.imu_gaps().longest) {
     shades.push_back({gap.begin, gap.end, "IMU gap", Ink::purple});
   }
   return shades;
@@ -42,6 +68,11 @@ std::vector<Shade> time_shades(const RunData& data) {
 Panel time_panel(const RunData& data, const Axis& y) {
   Panel panel;
   panel.x = time_axis();
+  const Interval whole = whole_run(data);
+  if (whole.length() > 0) {
+    panel.x.min = whole.begin - kTimeMargin * whole.length();
+    panel.x.max = whole.end + kTimeMargin * whole.length();
+  }
   panel.y = y;
   panel.shades = time_shades(data);
   return panel;
@@ -72,6 +103,26 @@ Series bounds(const std::vector<double>& x, const std::vector<double>& centre,
   return series;
 }
 
+void tell_narrow_bounds(const std::vector<double>& sigma, Panel& panel) {
+  constexpr double kSeen = 1.0 / 150;  // of the axis
+  std::vector<double> finite;
+  std::copy_if(sigma.begin(), sigma.end(), std::back_inserter(finite),
+               [](double s) { return std::isfinite(s); });
+  if (finite.empty()) return;
+  const double seen = kSeen * y_span(panel).width() / 6;
+  const auto middle = finite.begin() + static_cast<std::ptrdiff_t>(finite.size() / 2);
+  std::nth_element(finite.begin(), middle, finite.end());
+  if (*middle >= seen) return;
+  const std::string unit = (shown_unit(panel.y) == "°" ? "" : " ") + shown_unit(panel.y);
+  const auto width = [&](double s) {
+    return significant_text(3 * panel.y.shown_factor * s, 2) + unit;
+  };
+  panel.note = joined({panel.note, fmt::format("3σ: median {}, largest {}", width(*middle),
+                                               width(largest_finite(finite)))},
+                      " · ");
+  if (largest_finite(finite) < seen) panel.series.front().in_legend = false;
+}
+
 double largest_finite(const std::vector<double>& values) {
   double largest = 0;
   for (const double value : values) {
@@ -87,7 +138,7 @@ void add_bounds(const Band& band, const std::string& label, const std::vector<do
   for (const auto& [at, name] : {std::pair{band.low, "2.5 %"}, std::pair{band.high, "97.5 %"}}) {
     Series bound = line(label, Ink::gray, {x.front(), x.back()}, {at, at});
     bound.column = of + " " + name;
-    bound.dashed = true;
+    bound.dash = Dash::dashes;
     bound.size = 1.4;
     panel.series.push_back(std::move(bound));
   }

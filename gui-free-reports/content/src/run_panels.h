@@ -13,11 +13,22 @@ namespace foucault::content {
 
 using Names = std::array<const char*, 3>;
 constexpr Names kNed{"North", "East", "Down"};
+/// Three curves of one panel, told apart in grey, too.
+constexpr std::array<plot::Ink, 3> kTriadInks{plot::Ink::blue, plot::Ink::vermillion,
+                                              plot::Ink::green};
+constexpr std::array<plot::Dash, 3> kTriadDashes{plot::Dash::none, plot::Dash::dashes,
+                                                 plot::Dash::dash_dot};
+
+/// UTC with GPS week and second: both clocks that readers use.
+std::string clock_text(int64_t t_ns);
+
+/// From the first to the last stamp of anything; of no length without data.
+Interval whole_run(const RunData& data);
 
 /// Outages, and gaps that nobody asked for.
 std::vector<plot::Shade> time_shades(const RunData& data);
 
-/// A panel over time, shaded.
+/// A panel over the time of the whole run, shaded.
 plot::Panel time_panel(const RunData& data, const plot::Axis& y);
 
 /// Three panels above each other with one x axis.
@@ -27,6 +38,10 @@ plot::Figure stacked_figure(const std::string& name, const std::string& title,
 /// centre +- 3 sigma.
 plot::Series bounds(const std::vector<double>& x, const std::vector<double>& centre,
                     const std::vector<double>& sigma, const std::string& column);
+
+/// Says in numbers how wide bounds are that are too narrow to be seen, and takes them out of the
+/// legend; `panel` has its series, the bounds first.
+void tell_narrow_bounds(const std::vector<double>& sigma, plot::Panel& panel);
 
 /// Both ends of the band, over the time of `x`.
 void add_bounds(const Band& band, const std::string& label, const std::vector<double>& x,

@@ -2,14 +2,20 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+
 #include "aids_section.h"
 #include "calibration_section.h"
 #include "consistency_section.h"
+#include "figure_list.h"
 #include "foucault/core/fix_quality.h"
-#include "foucault/core/time.h"
 #include "foucault/plot/text.h"
 #include "run_data.h"
 #include "run_figures.h"
+#include "run_panels.h"
+#include "sensor_figures.h"
+#include "statistics_tables.h"
 #include "timeline_section.h"
 
 namespace foucault::content {
@@ -41,12 +47,24 @@ std::vector<std::string> sampling_row(const char* name, const StepWatch& watch) 
           significant_text(watch.gap_duration()) + " s"};
 }
 
+/// Samples that were there and left out are missing, too.
+std::vector<std::string> imu_sampling_row(const RunData& data) {
+  const ImuGaps gaps = data.imu_gaps();
+  double longest = data.imu_steps.longest();
+  for (const Interval& gap : gaps.longest) longest = std::max(longest, gap.length());
+  std::vector<std::string> row = sampling_row("IMU samples", data.imu_steps);
+  row[3] = significant_text(longest) + " s";
+  row[4] = std::to_string(gaps.count);
+  row[5] = significant_text(gaps.duration) + " s";
+  return row;
+}
+
 Table sampling_table(const RunData& data) {
   Table table;
   table.title = "Sampling";
   table.header = {"", "Count", "Rate", "Longest interval", "Gaps", "Time in gaps"};
   if (data.imu_steps.stamps() > 1) {
-    table.rows.push_back(sampling_row("IMU samples", data.imu_steps));
+    table.rows.push_back(imu_sampling_row(data));
   }
   if (data.fix_steps.stamps() > 1) {
     table.rows.push_back(sampling_row("Used GNSS fixes", data.fix_steps));
@@ -55,7 +73,8 @@ Table sampling_table(const RunData& data) {
     table.rows.push_back(sampling_row("Epochs of the solution", data.epoch_steps));
   }
   table.note =
-      "A gap is longer than five usual intervals and than 0.2 s (IMU), 4 s (GNSS), 3 s (epochs).";
+      "A gap is longer than five usual intervals and than 0.2 s (IMU), 4 s (GNSS), 3 s "
+      "(epochs); samples that were left out make one, too.";
   return table;
 }
 
@@ -76,7 +95,7 @@ class RunReport::Collector {
 
   std::string subtitle() const {
     return joined({labels.recording, labels.method,
-                   data.start_ns() ? utc_text(*data.start_ns()) : std::string()},
+                   data.start_ns() ? "start " + clock_text(*data.start_ns()) : std::string()},
                   " · ");
   }
 
@@ -89,6 +108,8 @@ class RunReport::Collector {
   Section gnss() const {
     Section section{"GNSS"};
     if (!data.verdicts.empty()) section.tables.push_back(fix_table(data));
+    for (const Table& table : innovation_statistics(data)) section.tables.push_back(table);
+    add_if(receiver_figure(data, subtitle()), section);
     add_if(innovation_figure(data, subtitle()), section);
     add_if(postfit_figure(data, subtitle()), section);
     return section;
@@ -99,6 +120,18 @@ class RunReport::Collector {
     const Table sampling = sampling_table(data);
     if (!sampling.rows.empty()) section.tables.push_back(sampling);
     add_if(data_health_figure(data, subtitle()), section);
+    add_if(imu_intervals_figure(data, subtitle()), section);
+    add_if(raw_imu_figure(data, subtitle()), section);
+    add_if(imu_spectrum_figure(data, subtitle()), section);
+    return section;
+  }
+
+  Section solution() const {
+    Section section{"Solution", {}, {}, solution_figures(data, subtitle())};
+    add_if(speed_figure(data, subtitle()), section);
+    for (const Figure& figure : vehicle_figures(data, subtitle())) {
+      section.figures.push_back(figure);
+    }
     return section;
   }
 
@@ -106,16 +139,20 @@ class RunReport::Collector {
     ReportPage page;
     page.title = "Navigation report";
     page.subtitle = subtitle();
+    page.start_ns = data.start_ns();
     page.banner = banner;
     page.key_numbers = key_numbers;
     for (const Section& section :
          {overview(), timeline_section(data, subtitle()),
-          Section{"Errors", {}, {}, error_figures(data, subtitle())},
+          Section{"Errors", error_words(data), error_statistics(data),
+                  error_figures(data, subtitle())},
           consistency_section(data, subtitle()), gnss(), aids_section(data, aids, subtitle()),
-          calibration_section(data, subtitle()),
-          Section{"Solution", {}, {}, solution_figures(data, subtitle())},
+          calibration_section(data, subtitle()), solution(),
           Section{"Sensor biases", {}, {}, bias_figures(data, subtitle())}, health()}) {
       if (has_content(section)) page.sections.push_back(section);
+    }
+    if (!page.sections.empty()) {
+      page.sections.push_back({"Not shown", {}, {missing_figures(page, data, labels.method)}});
     }
     if (!labels.command.empty()) page.listings.push_back({"Command", labels.command});
     if (!labels.config.empty()) page.listings.push_back({"Configuration", labels.config});
@@ -135,6 +172,8 @@ RunReport::RunReport(RunLabels labels, const state::Mounting& mounting, const st
     : collector_(std::make_unique<Collector>(std::move(labels), mounting, told)) {}
 
 RunReport::~RunReport() = default;
+
+void RunReport::start(int64_t t_ns) { collector_->data.start(t_ns); }
 
 void RunReport::epoch(const state::Epoch& epoch) { collector_->data.add(epoch); }
 
@@ -157,6 +196,8 @@ void RunReport::consistency(const Consistency& consistency) {
 }
 
 void RunReport::aid(const AidSummary& aid) { collector_->aids.push_back(aid); }
+
+void RunReport::measurement(const Measurement& measurement) { collector_->data.add(measurement); }
 
 void RunReport::imu_stamp(int64_t t_ns) { collector_->data.add_imu_stamp(t_ns); }
 

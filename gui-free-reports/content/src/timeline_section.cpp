@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -139,15 +138,15 @@ std::vector<std::string> happenings(const RunData& data) {
                                 significant_text(total_length(gaps)),
                                 plural(gaps.size(), "stretch", "stretches")));
   }
-  if (data.imu_steps.gaps() > 0) {
-    parts.push_back(fmt::format("{} s without IMU in {}",
-                                significant_text(data.imu_steps.gap_duration()),
-                                plural(data.imu_steps.gaps(), "hole", "holes")));
+  if (const ImuGaps imu = data.imu_gaps(); imu.count > 0) {
+    parts.push_back(fmt::format("{} s without IMU in {}", significant_text(imu.duration),
+                                plural(imu.count, "hole", "holes")));
   }
   const size_t realigned = notices_of(data, state::NoticeKind::realigned);
   if (realigned > 0) parts.push_back(plural(realigned, "new alignment", "new alignments"));
-  const size_t others =
-      data.notices_seen - realigned - notices_of(data, state::NoticeKind::aligned);
+  const size_t others = data.notices_seen - realigned -
+                        notices_of(data, state::NoticeKind::aligned) -
+                        notices_of(data, state::NoticeKind::imu_gap);
   if (others > 0) parts.push_back(plural(others, "notice", "notices"));
   return parts;
 }
@@ -160,17 +159,20 @@ std::string summary(const RunData& data) {
       plural(fixes(data), "fix", "fixes"));
 }
 
+double gps_second(int64_t t_ns) { return static_cast<double>(unix_to_gps(t_ns).tow_ns) * 1e-9; }
+
 Table notice_table(const RunData& data) {
   Table table;
   table.title = "What happened on the way";
   table.of_words = true;
-  table.header = {"Time since start", "Event", "Detail"};
+  table.header = {"Time since start", "Event", "Detail", "UTC", "GPS second"};
   std::vector<state::Notice> notices = data.notices;
   std::stable_sort(notices.begin(), notices.end(),
                    [](const state::Notice& a, const state::Notice& b) { return a.t_ns < b.t_ns; });
   for (const state::Notice& notice : notices) {
     const double t = seconds_between(data.start_ns().value_or(notice.t_ns), notice.t_ns);
-    table.rows.push_back({number_text(t, 2) + " s", notice_name(notice.kind), notice.text});
+    table.rows.push_back({number_text(t, 2) + " s", notice_name(notice.kind), notice.text,
+                          utc_text(notice.t_ns), fmt::format("{:.3f}", gps_second(notice.t_ns))});
   }
   if (data.notices_seen > data.notices.size()) {
     table.note = fmt::format("{} more.", data.notices_seen - data.notices.size());
@@ -206,10 +208,11 @@ std::vector<Lane> lanes(const RunData& data) {
 }
 
 /// The stretches between the holes.
-std::vector<Interval> imu_stretches(const StepWatch& imu) {
+std::vector<Interval> imu_stretches(const RunData& data) {
+  const StepWatch& imu = data.imu_steps;
   std::vector<Interval> stretches;
   double begin = imu.first();
-  for (const Interval& gap : imu.longest_gaps()) {
+  for (const Interval& gap : data.imu_gaps().longest) {
     stretches.push_back({begin, gap.begin});
     begin = gap.end;
   }
@@ -241,22 +244,6 @@ void add_lane(const Lane& lane, double least_length, Panel& panel) {
   for (Series* series : {&bars, &strokes}) {
     if (!series->x.empty()) panel.series.push_back(std::move(*series));
   }
-}
-
-/// The time that the panel shows.
-Interval extent(const RunData& data) {
-  Interval whole{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
-  const auto add = [&whole](double begin, double end) {
-    whole.begin = std::min(whole.begin, begin);
-    whole.end = std::max(whole.end, end);
-  };
-  for (const StepWatch* watch : {&data.imu_steps, &data.epoch_steps}) {
-    if (watch->stamps() > 0) add(watch->first(), watch->last());
-  }
-  for (const auto& [verdict, stretches] : data.verdict_stretches) {
-    for (const Interval& interval : stretches.intervals()) add(interval.begin, interval.end);
-  }
-  return whole;
 }
 
 /// Notices from outside the recording are drawn at its ends.
@@ -294,7 +281,7 @@ void remove_imu_shades(Panel& panel) {
 }
 
 std::optional<Figure> timeline_figure(const RunData& data, const std::string& subtitle) {
-  const Interval whole = extent(data);
+  const Interval whole = whole_run(data);
   if (!(whole.length() > 0)) return std::nullopt;
   Panel panel = time_panel(data, {});
   remove_imu_shades(panel);
@@ -303,7 +290,7 @@ std::optional<Figure> timeline_figure(const RunData& data, const std::string& su
   for (const std::string_view lane : {kNotices, kAlignment}) add_events(data, lane, whole, panel);
   for (const Lane& lane : lanes(data)) add_lane(lane, least_length, panel);
   if (data.imu_steps.stamps() > 1) {
-    add_lane({"IMU", "IMU", Ink::gray, imu_stretches(data.imu_steps)}, least_length, panel);
+    add_lane({"IMU", "IMU", Ink::gray, imu_stretches(data)}, least_length, panel);
   }
   Figure figure{
       "timeline", "Timeline", subtitle,

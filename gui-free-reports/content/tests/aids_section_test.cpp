@@ -56,7 +56,7 @@ TEST(AidsSection, VelocityIsAlongTheEstimatedAxes) {
 
 TEST(AidsSection, NoneWithoutAids) {
   const ReportPage page = page_of({}, false);
-  EXPECT_EQ(find_figure(page, "vehicle_velocity"), nullptr);
+  EXPECT_EQ(find_figure(page, "aid_innovations"), nullptr);
   EXPECT_THROW(section_of(page, "Aids"), std::runtime_error);
 }
 

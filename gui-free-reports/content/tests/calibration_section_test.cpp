@@ -42,8 +42,8 @@ TEST(CalibrationSection, EstimatesAreWholeAndInUnitsOfUsers) {
   ASSERT_EQ(arms.panels.size(), 3U);
   EXPECT_EQ(arms.panels[2].title, "down");
   EXPECT_EQ(arms.panels[2].y.label, "Antenna");
-  EXPECT_EQ(arms.panels[2].y.unit, "cm");
-  EXPECT_NEAR(series_of(arms.panels[2], "estimate").y.back(), -79, 1e-9);
+  EXPECT_EQ(arms.panels[2].y.unit, "m");
+  EXPECT_NEAR(series_of(arms.panels[2], "estimate").y.back(), -0.79, 1e-9);
   const Figure& vehicle = figure_of(page, "calibration_vehicle");
   ASSERT_EQ(vehicle.panels.size(), 3U);
   EXPECT_NEAR(series_of(vehicle.panels[0], "estimate").y.back(), 0.01 * 180 / M_PI, 1e-9);
@@ -55,18 +55,18 @@ TEST(CalibrationSection, EstimatesAreWholeAndInUnitsOfUsers) {
 TEST(CalibrationSection, BoundsOfTheEstimateAndOfThePrior) {
   const Figure arms = figure_of(page_of(told()), "calibration_arms");
   const Series& band = series_of(arms.panels.at(0), "±3σ");
-  EXPECT_NEAR(band.upper.back() - band.lower.back(), 6 * 0.5, 1e-9);
+  EXPECT_NEAR(band.upper.back() - band.lower.back(), 6 * 0.005, 1e-9);
   EXPECT_THROW(series_of(arms.panels.at(0), "prior ±3σ"), std::runtime_error) << "far outside";
   const Panel& down = arms.panels.at(2);
   std::vector<double> prior;
   for (const Series& series : down.series) {
     if (series.label != "prior ±3σ") continue;
-    EXPECT_TRUE(series.dashed);
+    EXPECT_EQ(series.dash, plot::Dash::dashes);
     prior.push_back(series.y.at(0));
   }
   ASSERT_EQ(prior.size(), 2U);
-  EXPECT_NEAR(prior[0], -80 - 15, 1e-9);
-  EXPECT_NEAR(prior[1], -80 + 15, 1e-9);
+  EXPECT_NEAR(prior[0], -0.80 - 0.15, 1e-9);
+  EXPECT_NEAR(prior[1], -0.80 + 0.15, 1e-9);
 }
 
 TEST(CalibrationSection, NamesWhatTheRecordingDoesNotTell) {
@@ -76,7 +76,7 @@ TEST(CalibrationSection, NamesWhatTheRecordingDoesNotTell) {
             "Antenna, down: the recording does not tell it; it stays at its prior.");
   ASSERT_EQ(section.tables.at(0).rows.size(), 6U);
   EXPECT_EQ(section.tables[0].rows[2],
-            (std::vector<std::string>{"Antenna, down", "cm", "−79.0", "4.8", "5.00", "96 %"}));
+            (std::vector<std::string>{"Antenna, down", "m", "−0.790", "0.048", "0.0500", "96 %"}));
 
   state::Told seen;
   seen.layout.add(state::block::wheel_scale, 0.05);

@@ -34,6 +34,8 @@ DriftCase made_up_case(const std::string& name, double scale) {
         curve.since_begin_s.push_back(t);
         curve.horizontal_m.push_back(0.01 + a * t * t);
         curve.vertical_m.push_back(0.01 + 0.03 * a * t * t);
+        curve.north_m.push_back(0.6 * curve.horizontal_m.back());
+        curve.east_m.push_back(-0.8 * curve.horizontal_m.back());
       }
       curve.max_horizontal_m = curve.horizontal_m.back();
       curve.max_vertical_m = curve.vertical_m.back();
@@ -228,6 +230,57 @@ TEST(EvaluationFigures, AMethodHasOneColourEverywhere) {
   const Ink ink = drift_growth(only_rough, kMethods).panels[0].series[0].ink;
   EXPECT_EQ(ink, drift_growth(made_up_case("X", 1e-3), kMethods).panels[0].series[2].ink);
   EXPECT_EQ(ink, error_timeline(made_up_timeline(), kMethods).panels[0].series[2].ink);
+}
+
+TEST(EvaluationFigures, AMethodLooksTheSameWhateverStandsBesideIt) {
+  const DriftCase all = made_up_case("X", 1e-3);
+  DriftCase one = all;
+  one.methods = {all.methods[1]};
+  const Series beside = maximum_drifts(all, kMethods).panels[0].series[1];
+  const Series alone = maximum_drifts(one, {"refined"}).panels[0].series[0];
+  EXPECT_EQ(beside.ink, alone.ink);
+  EXPECT_EQ(beside.shape, alone.shape);
+  EXPECT_EQ(beside.dash, alone.dash);
+}
+
+TEST(EvaluationFigures, ErrorsInOutagesShareTheirScale) {
+  const Figure figure = outage_errors(made_up_case("X", 1e-3), kMethods);
+  EXPECT_EQ(figure.panels.size(), 12U) << "of twenty";
+  double farthest = 0;
+  for (const Panel& panel : figure.panels) {
+    EXPECT_EQ(panel.x.max, figure.panels[0].x.max);
+    EXPECT_EQ(*panel.x.min, -*panel.x.max);
+    for (const Series& series : panel.series) {
+      for (const double x : series.x) farthest = std::max(farthest, std::abs(x));
+    }
+  }
+  EXPECT_NEAR(*figure.panels[0].x.max, 1.08 * farthest, 1e-9);
+}
+
+TEST(EvaluationFigures, TheEllipseHoldsNineteenOfTwenty) {
+  std::mt19937 rng{42};
+  std::normal_distribution<double> normal;
+  DriftCase many{"X", {{"ekf", {}}}};
+  for (int i = 0; i < 4000; ++i) {
+    OutageCurve curve;
+    curve.east_m = {3 + 2 * normal(rng)};
+    curve.north_m = {0.5 * normal(rng)};
+    many.methods[0].outages.push_back(curve);
+  }
+  const Figure figure = end_errors(many, {"ekf"});
+  const Series& ellipse = figure.panels[0].series[0];
+  const double half = std::sqrt(-2 * std::log(0.05));  // chi-square of 2 degrees
+  const auto [west, east] = std::minmax_element(ellipse.x.begin(), ellipse.x.end());
+  EXPECT_NEAR(*east, 3 + 2 * half, 0.2);
+  EXPECT_NEAR(*west, 3 - 2 * half, 0.2);
+}
+
+TEST(EvaluationFigures, AblationHasABarAPart) {
+  const Figure figure =
+      ablation_bars({{"ekf", "", 1, 2}, {"ekf", "wheels", 3, 4}, {"batch", "", 5, 6}}, kMethods);
+  EXPECT_EQ(figure.panels[0].x.categories,
+            (std::vector<std::string>{"as it is", "without wheels"}));
+  EXPECT_EQ(figure.panels[1].series[1].y, (std::vector<double>{2, 4})) << "ekf after batch";
 }
 
 TEST(EvaluationFigures, DistancesShowEveryOutageAndTheBinsOnTop) {

@@ -22,6 +22,18 @@ TEST(AxisStatistics, AreRmsAndShareInsideThreeSigmaOfWhatIsFinite) {
   EXPECT_EQ(statistics.inside_3_sigma(), Eigen::Vector3d(0.5, 1, 0.5));
 }
 
+TEST(AxisStatistics, TellMeanQuantilesAndTheLargest) {
+  AxisStatistics statistics;
+  for (int i = 0; i <= 100000; ++i) {
+    statistics.add({i % 2 == 0 ? 1.0 * i : -1.0 * i, 2, -3}, Eigen::Vector3d::Ones());
+  }
+  EXPECT_NEAR(statistics.mean().x(), 50000.0 / 100001, 1e-9);
+  EXPECT_NEAR(statistics.quantile(0.5).x(), 50000, 20) << "of every eighth";
+  EXPECT_NEAR(statistics.quantile(0.95).x(), 95000, 20);
+  EXPECT_EQ(statistics.largest(), Eigen::Vector3d(100000, 2, 3));
+  EXPECT_EQ(statistics.quantile(0.5).z(), 3);
+}
+
 TEST(Triad, CountsFromItsSettlingTimeOnAndKeepsAllRows) {
   Triad triad;
   EXPECT_TRUE(triad.empty());

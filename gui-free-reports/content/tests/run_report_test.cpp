@@ -30,12 +30,12 @@ std::set<std::string> figure_names(const ReportPage& page) {
 
 TEST(RunReport, ShowsEverythingThatWasGiven) {
   const ReportPage page = demo_page({120, true, false});
-  EXPECT_EQ(
-      figure_names(page),
-      (std::set<std::string>{"ground_track", "position", "velocity", "attitude", "uncertainty",
-                             "position_error", "velocity_error", "attitude_error", "gyro_bias",
-                             "accel_bias", "gnss_innovations", "gnss_residuals", "data_health",
-                             "timeline", "nis", "innovation_whiteness", "nees"}));
+  EXPECT_EQ(figure_names(page),
+            (std::set<std::string>{
+                "ground_track", "position", "velocity", "attitude", "uncertainty", "position_error",
+                "velocity_error", "attitude_error", "gyro_bias", "accel_bias", "gnss_innovations",
+                "gnss_residuals", "data_health", "timeline", "nis", "innovation_whiteness", "nees",
+                "vehicle_velocity", "speed_height"}));
   EXPECT_EQ(page.key_numbers.size(), 4U);
   EXPECT_EQ(page.listings.size(), 2U) << "command and configuration";
   EXPECT_NE(page.subtitle.find("trip.rawlog"), std::string::npos);
@@ -97,7 +97,7 @@ TEST(RunReport, PositionIsInMetresFromTheStart) {
   EXPECT_NEAR(series_of(figure.panels[2], "estimate").y.back(), 20, 1e-9);
 }
 
-TEST(RunReport, HeadingIsTheVehiclesAndHasNoJumps) {
+TEST(RunReport, HeadingIsTheVehiclesAndIsBrokenAtNorth) {
   state::Mounting mounting;
   mounting.q_v_b = so3::from_euler({0, 0, 0.5});
   RunReport report(kLabels, mounting);
@@ -110,9 +110,15 @@ TEST(RunReport, HeadingIsTheVehiclesAndHasNoJumps) {
   }
   const Figure figure = figure_of(report.page(), "attitude");
   const Series heading = series_of(figure.panels[2], "estimate");
-  for (size_t i = 0; i < 100; ++i) {
-    EXPECT_NEAR(heading.y[i], (6.0 + 0.1 * static_cast<double>(i)) * 180 / M_PI, 1e-9);
-  }
+  // 6.0 to 15.9 rad pass north twice, each time by 360, a gap, and 0.
+  EXPECT_EQ(heading.y.size(), 100U + 2 * 3);
+  EXPECT_NEAR(heading.y[0], 6.0 * 180 / M_PI, 1e-9);
+  EXPECT_EQ(heading.y[3], 360);
+  EXPECT_TRUE(std::isnan(heading.y[4]));
+  EXPECT_EQ(heading.y[5], 0);
+  EXPECT_NEAR(heading.x[5], (2 * M_PI - 6.0) / 0.1, 1e-9);
+  EXPECT_NEAR(heading.y[6], 6.3 * 180 / M_PI - 360, 1e-9);
+  EXPECT_EQ(figure.panels[2].y.max, 360);
   EXPECT_NEAR(series_of(figure.panels[0], "estimate").y[50], 0.1 * 180 / M_PI, 1e-9);
 }
 
@@ -147,6 +153,85 @@ TEST(RunReport, GapsAreShadedAndNotJoined) {
   const std::vector<double>& y = series_of(velocity.panels[0], "estimate").y;
   EXPECT_EQ(y.size(), 9U);
   EXPECT_TRUE(std::isnan(y[5]));
+}
+
+TEST(RunReport, BandsTooNarrowToBeSeenAreNumbers) {
+  RunReport report(kLabels, state::Mounting{});
+  for (int t = 0; t < 100; ++t) {
+    state::Epoch epoch;
+    epoch.t_ns = nanoseconds(t);
+    epoch.position.height = 10.0 * t;
+    epoch.covariance.diagonal().setConstant(1e-4);
+    report.epoch(epoch);
+  }
+  const Figure figure = figure_of(report.page(), "position");
+  EXPECT_EQ(figure.panels[2].note, "3σ: median 0.030 m, largest 0.030 m");
+  EXPECT_FALSE(figure.panels[2].series[0].in_legend);
+  EXPECT_TRUE(figure.panels[0].series[0].in_legend) << "it fills the axis of a metre";
+}
+
+TEST(RunReport, FiguresOverTimeShareTheTimeOfTheRun) {
+  const ReportPage page = demo_page({120, true, true});
+  std::set<double> begins, ends;
+  for (const Section& section : page.sections) {
+    for (const Figure& figure : section.figures) {
+      for (const Panel& panel : figure.panels) {
+        if (panel.x.kind != AxisKind::duration) continue;
+        begins.insert(panel.x.min.value());
+        ends.insert(panel.x.max.value());
+      }
+    }
+  }
+  EXPECT_EQ(begins.size(), 1U);
+  EXPECT_EQ(ends.size(), 1U);
+}
+
+TEST(RunReport, SaysWhatIsNotShownAndWhy) {
+  const ReportPage page = demo_page({60, false, false});
+  const Table& table = section_of(page, "Not shown").tables.at(0);
+  const auto names = [&](const std::string& what) {
+    return std::any_of(table.rows.begin(), table.rows.end(),
+                       [&](const auto& row) { return row.at(0) == what; });
+  };
+  EXPECT_TRUE(names("Errors of position, velocity, attitude"));
+  EXPECT_FALSE(names("Innovations"));
+  EXPECT_FALSE(find_figure(page, "raw_imu")) << "the demo hands over stamps alone";
+  EXPECT_TRUE(names("IMU as recorded"));
+}
+
+TEST(RunReport, RawSamplesAndWhatTheReceiverSaysAreShown) {
+  RunReport report(kLabels, state::Mounting{});
+  GnssFix fix;
+  fix.position_covariance = Eigen::Matrix3d::Identity() * 0.04;
+  fix.details.satellites = 12;
+  report.measurement(fix);
+  ImuIncrement increment;
+  increment.dvel_b = Eigen::Vector3d(0, 0, -0.0981);
+  for (int i = 1; i <= 2000; ++i) {
+    increment.t_begin_ns = increment.t_end_ns;
+    increment.t_end_ns = nanoseconds(0.01 * i);
+    report.measurement(increment);
+  }
+  const ReportPage page = report.page();
+  EXPECT_NEAR(figure_of(page, "raw_imu").panels.at(5).series[0].y[7], -9.81, 1e-6);
+  EXPECT_EQ(figure_of(page, "imu_spectrum").panels.size(), 2U);
+  const Figure& receiver = figure_of(page, "receiver");
+  ASSERT_EQ(receiver.panels.size(), 2U) << "no HDOP, no age";
+  EXPECT_NEAR(receiver.panels[0].series[0].y[0], 0.2, 1e-12);
+  EXPECT_EQ(receiver.panels[1].series[0].y[0], 12);
+}
+
+TEST(RunReport, GapsOfSamplesThatWereLeftOutCount) {
+  RunReport report(kLabels, state::Mounting{});
+  for (int i = 0; i < 2000; ++i) report.imu_stamp(nanoseconds(0.01 * i));
+  report.notice(
+      {nanoseconds(12), state::NoticeKind::imu_gap, "no IMU data for 1.500 s up to then; bridged"});
+  const ReportPage page = report.page();
+  const std::vector<std::string>& row = section_of(page, "Data health").tables.at(0).rows.at(0);
+  EXPECT_EQ(row.at(4), "1");
+  EXPECT_EQ(row.at(5), "1.50 s");
+  EXPECT_NE(section_of(page, "Timeline").paragraphs.at(0).find("1.50 s without IMU in 1 hole"),
+            std::string::npos);
 }
 
 TEST(RunReport, StatisticsLeaveOutTheSettlingTime) {

@@ -1,6 +1,15 @@
 #include "report_html.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "foucault/plot/axis_scale.h"
+#include "foucault/plot/text.h"
+#include "live_data.h"
 
 namespace foucault::page {
 
@@ -10,7 +19,13 @@ namespace {
 
 constexpr const char* kStyle = R"css(
 :root { --ink: #1c1e21; --soft: #565b62; --line: #e1e4e8; --paper: #ffffff; --wash: #f6f7f9;
-  --accent: #0072b2; --good: #007a5a; --bad: #b3261e; }
+  --accent: #0072b2; --good: #007a5a; --bad: #b3261e; --alarm: #fdf1f0; color-scheme: light; }
+@media screen and (prefers-color-scheme: dark) {
+  :root { --ink: #e8eaed; --soft: #a9afb8; --line: #383d45; --paper: #17191d; --wash: #0f1114;
+    --accent: #6db8e8; --good: #43c49c; --bad: #ff8a80; --alarm: #2c1a1a; color-scheme: dark; }
+  .still img { filter: brightness(0.88); }
+}
+:focus-visible { outline: 2px solid var(--accent); outline-offset: 2px; }
 * { box-sizing: border-box; }
 html { scroll-behavior: smooth; }
 body { margin: 0; background: var(--wash); color: var(--ink);
@@ -29,7 +44,7 @@ a:hover { text-decoration: underline; }
   padding: 14px 18px; margin: 0 0 24px; overflow-wrap: anywhere; }
 .banner b { color: var(--good); font-size: 19px; }
 .banner p { margin: 4px 0 0; max-width: none; }
-.banner.alarming { border-color: var(--bad); background: #fdf1f0; }
+.banner.alarming { border-color: var(--bad); background: var(--alarm); }
 .banner.alarming b { color: var(--bad); }
 nav { display: flex; flex-wrap: wrap; gap: 6px 22px; margin: 0 0 28px; font-size: 15px; }
 .tiles { display: grid; grid-template-columns: repeat(auto-fit, minmax(190px, 1fr)); gap: 14px;
@@ -56,6 +71,23 @@ tr:last-child td { border-bottom: none; }
 figure { margin: 26px 0 40px; break-inside: avoid; }
 figure img { width: 100%; height: auto; display: block; border: 1px solid var(--line);
   border-radius: 6px; }
+.live { display: none; }
+.is-live .live { display: block; }
+.is-live .still { display: none; }
+.live { border: 1px solid var(--line); border-radius: 6px; padding: 10px 10px 6px; }
+.live-head { display: flex; justify-content: space-between; gap: 12px; align-items: baseline;
+  font-size: 17px; }
+.live canvas[tabindex] { display: block; width: 100%; touch-action: pan-y pinch-zoom;
+  cursor: crosshair; }
+.live button { font: inherit; font-size: 13px; color: inherit; background: none; padding: 1px 8px;
+  border: 1px solid var(--line); border-radius: 5px; cursor: pointer; }
+.live button[aria-pressed="false"] { opacity: 0.45; text-decoration: line-through; }
+.tools { white-space: nowrap; }
+.tools button { margin-left: 4px; min-width: 28px; }
+.series { display: flex; flex-wrap: wrap; gap: 4px 8px; margin: 6px 0; font-size: 13px; }
+.series canvas { width: 26px; height: 12px; margin-right: 5px; }
+.readout { font-size: 13px; color: var(--soft); min-height: 2.8em; margin: 4px 2px 0;
+  max-width: none; }
 figcaption { margin-top: 10px; font-size: 15px; max-width: 58em; }
 figcaption .files { white-space: nowrap; color: var(--soft); font-size: 13.5px;
   margin-left: 6px; }
@@ -66,7 +98,13 @@ pre { background: var(--wash); border: 1px solid var(--line); border-radius: 6px
   overflow-wrap: anywhere; }
 footer { margin-top: 48px; padding-top: 14px; border-top: 1px solid var(--line);
   color: var(--soft); font-size: 13.5px; }
-@media (max-width: 700px) { main { padding: 28px 18px; } h1 { font-size: 27px; } }
+@media (max-width: 700px) {
+  main { padding: 28px 14px; }
+  h1 { font-size: 27px; }
+  header p, figcaption { overflow-wrap: anywhere; }
+  .tiles { grid-template-columns: repeat(auto-fit, minmax(140px, 1fr)); gap: 8px; }
+  .tile dd { font-size: 21px; }
+}
 @media print {
   @page { size: A4; margin: 16mm 15mm; }
   body { background: none; font-size: 10.5pt; }
@@ -75,7 +113,13 @@ footer { margin-top: 48px; padding-top: 14px; border-top: 1px solid var(--line);
   h2 { break-after: avoid; margin-top: 9mm; }
   .banner, .tile, table, tr { break-inside: avoid; }
   figure { margin: 5mm 0 7mm; }
-  figure img { border: none; }
+  .is-live .live { display: none; }
+  .is-live .still { display: block; }
+  figure img { border: none; width: auto; max-width: 100%; max-height: 215mm; margin: 0 auto; }
+  .table { overflow: visible; }
+  table { min-width: 0; font-size: 8.5pt; }
+  th, td { padding-right: 10px; overflow-wrap: anywhere; }
+  pre { font-size: 8pt; }
   a { color: inherit; }
 }
 )css";
@@ -145,13 +189,54 @@ std::string tables(const std::vector<Table>& tables) {
   return html + "</div>\n";
 }
 
+/// Broken lines are bounds.
+bool is_curve(const Series& series) {
+  return !series.y.empty() && series.in_legend && series.dash == Dash::none;
+}
+
+/// What one sees of a panel: where its last curve runs, and its note.
+std::string seen_in(const Panel& panel) {
+  const std::string name = panel.title.empty() ? panel.y.label : panel.title;
+  std::string text = name;
+  const auto curve = std::find_if(panel.series.rbegin(), panel.series.rend(), is_curve);
+  if (panel.y.kind == AxisKind::category) {
+    text = fmt::format("{}", fmt::join(panel.y.categories, ", "));
+  } else if (curve != panel.series.rend()) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const double value : curve->y) {
+      if (!std::isfinite(value)) continue;
+      low = std::min(low, value);
+      high = std::max(high, value);
+    }
+    const double factor = panel.y.shown_factor;
+    if (low <= high) {
+      text += fmt::format("{} from {} to {} {}", curve->label.empty() ? "" : " " + curve->label,
+                          significant_text(low * factor), significant_text(high * factor),
+                          shown_unit(panel.y));
+    }
+  }
+  return joined({text, panel.note}, "; ");
+}
+
+/// For those who cannot see it.
+std::string seen_in(const Figure& figure) {
+  constexpr size_t kMost = 9;
+  std::string text = figure.title + ".";
+  for (size_t i = 0; i < std::min(kMost, figure.panels.size()); ++i) {
+    const std::string seen = seen_in(figure.panels[i]);
+    if (!seen.empty()) text += " " + seen + ".";
+  }
+  return text;
+}
+
 std::string figure(const Figure& figure, int number) {
   return fmt::format(
-      "<figure id=\"{0}\">\n<a href=\"{0}.png\"><img src=\"{0}.png\" alt=\"{1}\" width=\"{2:.0f}\" "
-      "height=\"{3:.0f}\"></a>\n<figcaption><b>Figure {4}.</b> {5} <span class=\"files\">"
-      "<a href=\"{0}.csv\">numbers (CSV)</a> · <a href=\"{0}.png\">image</a></span></figcaption>\n"
-      "</figure>\n",
-      figure.name, escaped(figure.title), 4 * figure.width_mm, 4 * figure.height_mm, number,
+      "<figure id=\"{0}\">\n<a class=\"still\" href=\"{0}.png\"><img src=\"{0}.png\" alt=\"{1}\" "
+      "width=\"{2:.0f}\" height=\"{3:.0f}\"></a>\n<figcaption><b>Figure {4}.</b> {5} "
+      "<span class=\"files\"><a href=\"{0}.csv\">numbers (CSV)</a> · <a href=\"{0}.png\">image</a> "
+      "· <a href=\"{0}.svg\">SVG</a>"
+      "</span></figcaption>\n</figure>\n",
+      figure.name, escaped(seen_in(figure)), 4 * figure.width_mm, 4 * figure.height_mm, number,
       escaped(figure.caption.empty() ? figure.title + "." : figure.caption));
 }
 
@@ -200,7 +285,13 @@ std::string to_html(const ReportPage& page) {
   }
   for (const Listing& each : page.listings) html += listing(each);
   if (!page.footer.empty()) html += fmt::format("<footer>{}</footer>\n", escaped(page.footer));
-  return html + "</main>\n</body>\n</html>\n";
+  html += "</main>\n";
+  if (figure_number > 0) {
+    html += fmt::format(
+        "<script type=\"application/json\" id=\"live-data\">{}</script>\n<script>\n{}</script>\n",
+        live_data(page), live_script());
+  }
+  return html + "</body>\n</html>\n";
 }
 
 }  // namespace foucault::page

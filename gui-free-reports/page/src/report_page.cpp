@@ -71,6 +71,7 @@ Json page_to_json(const ReportPage& page) {
             {"sections", Json::array()}, {"listings", page.listings}};
   for (const Section& section : page.sections) json["sections"].push_back(section_to_json(section));
   if (page.banner) json["banner"] = *page.banner;
+  if (page.start_ns) json["start_ns"] = *page.start_ns;
   return json;
 }
 
@@ -79,6 +80,7 @@ ReportPage page_from_json(const Json& j, const std::string& folder) {
   j.at("title").get_to(page.title);
   j.at("subtitle").get_to(page.subtitle);
   j.at("footer").get_to(page.footer);
+  if (j.contains("start_ns")) page.start_ns = j.at("start_ns").get<int64_t>();
   if (j.contains("banner")) page.banner = j.at("banner").get<Banner>();
   j.at("key_numbers").get_to(page.key_numbers);
   for (const Json& section : j.at("sections")) {
@@ -90,11 +92,11 @@ ReportPage page_from_json(const Json& j, const std::string& folder) {
 
 // ---- writing
 
-std::vector<const Figure*> figures_of(const ReportPage& page) {
-  std::vector<const Figure*> figures;
+std::vector<Figure*> figures_of(ReportPage& page) {
+  std::vector<Figure*> figures;
   std::set<std::string> names;
-  for (const Section& section : page.sections) {
-    for (const Figure& figure : section.figures) {
+  for (Section& section : page.sections) {
+    for (Figure& figure : section.figures) {
       if (!names.insert(figure.name).second) {
         throw DataError("report: two figures are named '" + figure.name + "'");
       }
@@ -104,14 +106,15 @@ std::vector<const Figure*> figures_of(const ReportPage& page) {
   return figures;
 }
 
-/// Draws on as many threads as there are processors, each with a renderer of its own.
-void save_figures(const std::vector<const Figure*>& figures, const std::string& folder) {
+/// Draws on as many threads as there are processors, each with a renderer of its own. The figures
+/// become what was written, rounded.
+void save_figures(const std::vector<Figure*>& figures, const std::string& folder) {
   const Fonts fonts = find_fonts();
   std::atomic<size_t> next{0};
   const auto work = [&] {
     Renderer renderer(fonts);
     for (size_t i = next++; i < figures.size(); i = next++) {
-      save_figure(*figures[i], folder, renderer);
+      *figures[i] = save_figure(*figures[i], folder, renderer);
     }
   };
   const size_t threads = std::clamp<size_t>(std::thread::hardware_concurrency(), 1,
@@ -176,8 +179,8 @@ std::string without_trailing_slash(std::string folder) {
 
 }  // namespace
 
-void write_report(const ReportPage& page, const std::string& folder) {
-  const std::vector<const Figure*> figures = figures_of(page);
+void write_report(ReportPage page, const std::string& folder) {
+  const std::vector<Figure*> figures = figures_of(page);
   PendingFolder pending(without_trailing_slash(folder));
   save_figures(figures, pending.path());
   write_file(pending.path() + "/index.html", to_html(page));

@@ -62,7 +62,7 @@ TEST(ReportHtml, FiguresAreNumberedOverAllSections) {
   const std::string html = to_html(page);
   EXPECT_THAT(html, HasSubstr("<b>Figure 1.</b> First. "));
   EXPECT_THAT(html, HasSubstr("<b>Figure 2.</b> What good looks like. "));
-  EXPECT_THAT(html, HasSubstr("<img src=\"b.png\" alt=\"Second\" width=\"1000\" height=\"600\">"));
+  EXPECT_THAT(html, HasSubstr("<img src=\"b.png\" alt=\"Second.\" width=\"1000\" height=\"600\">"));
   EXPECT_THAT(html, HasSubstr("<a href=\"#section-2\">Two</a>"));
 }
 

@@ -157,6 +157,8 @@ Ticks AxisScale::ticks(int count) const {
       return log_ticks(span_.min, span_.max, count, axis_->unit);
     case AxisKind::duration:
       return duration_ticks(span_.min, span_.max, count);
+    case AxisKind::bearing:
+      return bearing_ticks(span_.min, span_.max, count);
     case AxisKind::linear:
       break;
     case AxisKind::category: {

@@ -11,12 +11,11 @@
 namespace foucault::plot {
 namespace {
 
-constexpr int kFine = 4;             // fine pixels a pixel, each way
-constexpr int kShift = 4;            // fractional bits of fine coordinates
-constexpr int kBand = 64;            // height of the fine mask [px]: 2 MB, within reach of a cache
-constexpr double kMargin = 64;       // lines are cut this far outside of what is seen [px]
-constexpr double kFar = 8192;        // corners are moved this close [px], for whole numbers
-constexpr double kCapHeight = 0.73;  // of DejaVu Sans, in em
+constexpr int kFine = 4;        // fine pixels a pixel, each way
+constexpr int kShift = 4;       // fractional bits of fine coordinates
+constexpr int kBand = 64;       // height of the fine mask [px]: 2 MB, within reach of a cache
+constexpr double kMargin = 64;  // lines are cut this far outside of what is seen [px]
+constexpr double kFar = 8192;   // corners are moved this close [px], for whole numbers
 
 int pixels(double points) { return static_cast<int>(std::lround(points * kPixelsPerPoint)); }
 
@@ -137,9 +136,10 @@ class FineMask {
   bool blank_ = true;
 };
 
-std::vector<Polyline> dashes(const Polyline& line, double on, double off) {
+std::vector<Polyline> dashes(const Polyline& line, const std::vector<double>& pattern) {
   std::vector<Polyline> result;
-  double left = on;
+  size_t part = 0;
+  double left = pattern[0];
   bool drawing = true;
   Polyline current;
   for (size_t i = 0; i + 1 < line.size(); ++i) {
@@ -157,7 +157,8 @@ std::vector<Polyline> dashes(const Polyline& line, double on, double off) {
         current = {at};
       }
       drawing = !drawing;
-      left = drawing ? on : off;
+      part = (part + 1) % pattern.size();
+      left = pattern[part];
     }
     left -= length;
     if (drawing) current.push_back(line[i + 1]);
@@ -166,10 +167,12 @@ std::vector<Polyline> dashes(const Polyline& line, double on, double off) {
   return result;
 }
 
-std::vector<Polyline> dashes(const std::vector<Polyline>& lines, double width) {
+std::vector<Polyline> dashes(const std::vector<Polyline>& lines, const Pen& pen) {
+  std::vector<double> pattern = dash_pattern(pen.dash);
+  for (double& length : pattern) length *= pen.width;
   std::vector<Polyline> result;
   for (const Polyline& line : lines) {
-    for (Polyline& dash : dashes(line, 4.5 * width, 3 * width)) result.push_back(std::move(dash));
+    for (Polyline& dash : dashes(line, pattern)) result.push_back(std::move(dash));
   }
   return result;
 }
@@ -256,6 +259,22 @@ cv::Mat dilated(const cv::Mat& coverage, int radius) {
 
 }  // namespace
 
+std::vector<double> dash_pattern(Dash dash) {
+  switch (dash) {
+    case Dash::none:
+      break;
+    case Dash::dashes:
+      return {4.5, 3};
+    case Dash::long_dashes:
+      return {10, 3};
+    case Dash::dots:
+      return {1.2, 2};
+    case Dash::dash_dot:
+      return {6, 2.2, 1.2, 2.2};
+  }
+  return {};
+}
+
 Typesetter::Typesetter(const Fonts& fonts)
     : regular_(load_font(fonts.regular)), bold_(load_font(fonts.bold)) {}
 
@@ -278,7 +297,7 @@ Typesetter::Ink Typesetter::set(const std::string& text, double points, bool bol
 }
 
 Canvas::Canvas(cv::Size size, Typesetter& typesetter)
-    : image_(size, CV_8UC3, cv::Scalar::all(255)), typesetter_(typesetter) {}
+    : Surface(typesetter), image_(size, CV_8UC3, cv::Scalar::all(255)) {}
 
 /// In bands: a mask of the whole area would take sixteen times its pixels.
 template <class Draw>
@@ -295,8 +314,8 @@ void Canvas::polylines(const std::vector<Polyline>& lines, const Pen& pen, const
   const cv::Rect area = bounds(lines, pen.width + 1, clip);
   if (area.empty()) return;
   const std::vector<Polyline> dashed =
-      pen.dashed ? dashes(lines, pen.width) : std::vector<Polyline>();
-  const std::vector<Polyline>& parts = pen.dashed ? dashed : lines;
+      pen.dash == Dash::none ? std::vector<Polyline>() : dashes(lines, pen);
+  const std::vector<Polyline>& parts = pen.dash == Dash::none ? lines : dashed;
   cover(area, pen.colour, pen.opacity, [&](FineMask& mask) {
     for (const Polyline& part : parts) {
       for (size_t i = 0; i + 1 < part.size(); ++i) mask.line(part[i], part[i + 1], pen.width);
@@ -322,8 +341,8 @@ void Canvas::markers(const Polyline& places, Shape shape, double diameter, Rgb c
   });
 }
 
-void Canvas::arrowheads(const Polyline& tips, bool up, double size, Rgb colour,
-                        const cv::Rect& clip) {
+void Surface::arrowheads(const Polyline& tips, bool up, double size, Rgb colour,
+                         const cv::Rect& clip) {
   std::vector<Polyline> triangles;
   const double base = up ? size : -size;
   for (const cv::Point2d& tip : tips) {

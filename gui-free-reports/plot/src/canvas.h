@@ -15,6 +15,7 @@ class FreeType2;
 namespace foucault::plot {
 
 constexpr double kPixelsPerMillimetre = 8;
+constexpr double kCapHeight = 0.73;  // of DejaVu Sans, in em
 constexpr double kPixelsPerPoint = kPixelsPerMillimetre * 25.4 / 72;
 
 using Polyline = std::vector<cv::Point2d>;
@@ -23,8 +24,11 @@ struct Pen {
   Rgb colour;
   double width = 1;  ///< [px]
   double opacity = 1;
-  bool dashed = false;
+  Dash dash = Dash::none;
 };
+
+/// Lengths of strokes and gaps, by turns, in widths of the line; empty: unbroken.
+std::vector<double> dash_pattern(Dash dash);
 
 enum class AlignX { left, centre, right };
 enum class AlignY { baseline, middle, top };
@@ -63,26 +67,47 @@ class Typesetter {
   cv::Ptr<cv::freetype::FreeType2> bold_;
 };
 
-/// An image one can draw on. Coordinates in pixels, x right, y down, fractions meaningful.
-/// Everything is drawn as coverage at four times the resolution, averaged and blended, so edges are
-/// smooth and a translucent shape has one even tone however it overlaps itself.
-class Canvas {
+/// What one can draw on. Coordinates in pixels, x right, y down, fractions meaningful.
+class Surface {
+ public:
+  explicit Surface(Typesetter& typesetter) : typesetter_(typesetter) {}
+  virtual ~Surface() = default;
+  Surface(const Surface&) = delete;
+  Surface& operator=(const Surface&) = delete;
+
+  Typesetter& typesetter() { return typesetter_; }
+
+  virtual void polylines(const std::vector<Polyline>& lines, const Pen& pen,
+                         const cv::Rect& clip) = 0;
+  virtual void polygons(const std::vector<Polyline>& convex, Rgb colour, double opacity,
+                        const cv::Rect& clip) = 0;
+  virtual void markers(const Polyline& places, Shape shape, double diameter, Rgb colour,
+                       double opacity, const cv::Rect& clip) = 0;
+  /// Whole pixels, crisp edges.
+  virtual void box(const cv::Rect& area, Rgb colour, double opacity = 1) = 0;
+  virtual void text(const std::string& text, cv::Point2d at, const TextStyle& style) = 0;
+
+  /// Triangles on a border, pointing up or down.
+  void arrowheads(const Polyline& tips, bool up, double size, Rgb colour, const cv::Rect& clip);
+
+ protected:
+  Typesetter& typesetter_;
+};
+
+/// An image. Everything is drawn as coverage at four times the resolution, averaged and blended, so
+/// edges are smooth and a translucent shape has one even tone however it overlaps itself.
+class Canvas : public Surface {
  public:
   Canvas(cv::Size size, Typesetter& typesetter);
 
   const cv::Mat& image() const { return image_; }
-  Typesetter& typesetter() { return typesetter_; }
-
-  void polylines(const std::vector<Polyline>& lines, const Pen& pen, const cv::Rect& clip);
+  void polylines(const std::vector<Polyline>& lines, const Pen& pen, const cv::Rect& clip) override;
   void polygons(const std::vector<Polyline>& convex, Rgb colour, double opacity,
-                const cv::Rect& clip);
+                const cv::Rect& clip) override;
   void markers(const Polyline& places, Shape shape, double diameter, Rgb colour, double opacity,
-               const cv::Rect& clip);
-  /// Triangles on a border, pointing up or down.
-  void arrowheads(const Polyline& tips, bool up, double size, Rgb colour, const cv::Rect& clip);
-  /// Whole pixels, crisp edges.
-  void box(const cv::Rect& area, Rgb colour, double opacity = 1);
-  void text(const std::string& text, cv::Point2d at, const TextStyle& style);
+               const cv::Rect& clip) override;
+  void box(const cv::Rect& area, Rgb colour, double opacity = 1) override;
+  void text(const std::string& text, cv::Point2d at, const TextStyle& style) override;
 
  private:
   /// Blends what `draw(mask)` draws, which is called for one part of the area after the other.
@@ -92,7 +117,6 @@ class Canvas {
 
   cv::Mat image_;
   std::vector<uchar> scratch_;  // for the fine coverage; kept
-  Typesetter& typesetter_;
 };
 
 }  // namespace foucault::plot

@@ -28,6 +28,12 @@ static auto words_of(Mark) {
                     std::pair(Mark::band, "band")};
 }
 
+static auto words_of(Dash) {
+  return std::array{std::pair(Dash::none, "none"), std::pair(Dash::dashes, "dashes"),
+                    std::pair(Dash::long_dashes, "long_dashes"), std::pair(Dash::dots, "dots"),
+                    std::pair(Dash::dash_dot, "dash_dot")};
+}
+
 static auto words_of(Shape) {
   return std::array{std::pair(Shape::dot, "dot"),           std::pair(Shape::ring, "ring"),
                     std::pair(Shape::cross, "cross"),       std::pair(Shape::plus, "plus"),
@@ -44,7 +50,8 @@ static auto words_of(RangeRole) {
 static auto words_of(AxisKind) {
   return std::array{std::pair(AxisKind::linear, "linear"), std::pair(AxisKind::log, "log"),
                     std::pair(AxisKind::duration, "duration"),
-                    std::pair(AxisKind::category, "category")};
+                    std::pair(AxisKind::category, "category"),
+                    std::pair(AxisKind::bearing, "bearing")};
 }
 
 static auto words_of(Direction) {
@@ -82,7 +89,7 @@ static auto fields_of(const Series*) {
       std::pair("label", &Series::label), std::pair("column", &Series::column),
       std::pair("mark", &Series::mark), std::pair("ink", &Series::ink),
       std::pair("shape", &Series::shape), std::pair("size", &Series::size),
-      std::pair("opacity", &Series::opacity), std::pair("dashed", &Series::dashed),
+      std::pair("opacity", &Series::opacity), std::pair("dash", &Series::dash),
       std::pair("in_legend", &Series::in_legend), std::pair("value_labels", &Series::value_labels),
       std::pair("range_role", &Series::range_role), std::pair("categories", &Series::categories));
 }

@@ -178,6 +178,7 @@ class SeriesWriter {
     add("lower", joined({name, "lower", unit}, "_"), series.lower, {});
     add("upper", joined({name, "upper", unit}, "_"), series.upper, {});
     add("category", joined({name, "kind"}, "_"), series.category, names_of(series.categories));
+    add("time", "time_since_start_s", series.time, {});
     add("value", joined({name, slug(panel.colour.label), slug(panel.colour.unit)}, "_"),
         series.value, {});
   }
@@ -304,6 +305,7 @@ void read_series(const Panel& panel, const Json& json, const CsvReader& csv, Ser
   series.lower = read("lower", {});
   series.upper = read("upper", {});
   series.category = read("category", names_of(series.categories));
+  series.time = read("time", {});
   series.value = read("value", {});
 }
 
@@ -347,13 +349,16 @@ Figure from_text(const FigureText& text, const std::string& origin) {
   }
 }
 
-void save_figure(const Figure& figure, const std::string& folder, Renderer& renderer) {
+Figure save_figure(const Figure& figure, const std::string& folder, Renderer& renderer) {
   const FigureText text = to_text(figure);
   const std::string stem = folder + "/" + figure.name;
-  const std::vector<unsigned char> png = renderer.png(from_text(text, stem));
+  Figure written = from_text(text, stem);
+  const std::vector<unsigned char> png = renderer.png(written);
   write_file(stem + ".csv", text.csv);
   write_file(stem + ".json", text.json);
   write_file(stem + ".png", {reinterpret_cast<const char*>(png.data()), png.size()});
+  write_file(stem + ".svg", renderer.svg(written));
+  return written;
 }
 
 Figure load_figure(const std::string& folder, const std::string& name) {

@@ -72,7 +72,7 @@ class LayoutMaker {
 
   double above(int i) {
     const Panel& panel = figure_.panels[size_t(i)];
-    double height = millimetres(1);
+    double height = style::kAboveData;
     if (!panel.title.empty() || !panel.note.empty()) height += millimetres(5);
     if (const std::optional<Legend> legend = panel_legend(panel)) height += legend->height();
     return height;
@@ -176,7 +176,7 @@ class LayoutMaker {
   Ticks x_ticks(const AxisScale& scale, int width) {
     const int wanted = std::max(2, int(width / kSpacePerXTick));
     const bool few = labelled(scale.ticks(wanted)) < 3;
-    for (int count = wanted + 1; few && count <= wanted + 2; ++count) {
+    for (int count = wanted + 1; few && count <= wanted + 4; ++count) {
       Ticks ticks = scale.ticks(count);
       if (labelled(ticks) >= 3 && fits(ticks, width)) return ticks;
     }
@@ -199,6 +199,17 @@ class LayoutMaker {
     return AxisScale(panel.colour, y_span(values), plot.br().y, plot.y);
   }
 
+  /// What the x axis of a panel shows: that of all of its column, if they share it.
+  Span shown_x(int i) const {
+    if (!figure_.share_x) return x_span(figure_.panels[size_t(i)]);
+    Span all = x_span(figure_.panels[size_t(i)]);
+    for (int other = column(i); other < int(figure_.panels.size()); other += columns_) {
+      const Span span = x_span(figure_.panels[size_t(other)]);
+      all = {std::min(all.min, span.min), std::max(all.max, span.max)};
+    }
+    return all;
+  }
+
   void place_panel(int i, const std::vector<double>& left) {
     const Panel& panel = figure_.panels[size_t(i)];
     const size_t c = size_t(column(i));
@@ -207,7 +218,7 @@ class LayoutMaker {
     const double width = column_width() - left[c] - right_margin(int(c));
     const cv::Rect plot(int(std::lround(begin)), int(std::lround(track.begin)),
                         std::max(8, int(std::lround(width))), int(std::lround(track.length)));
-    Span across = x_span(panel);
+    Span across = shown_x(i);
     Span up = y_span(panel);
     if (panel.equal_aspect) equalize(across, up, plot);
     const AxisScale x(panel.x, across, plot.x, plot.br().x);

@@ -1,7 +1,11 @@
 #include "legend.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numeric>
 #include <set>
+
+#include "foucault/plot/axis_scale.h"
 
 namespace foucault::plot {
 namespace {
@@ -12,6 +16,7 @@ constexpr double kSample = 5.5 * kPixelsPerMillimetre;
 constexpr double kMarkerSample = 3 * kPixelsPerMillimetre;
 constexpr double kGap = 1.5 * kPixelsPerMillimetre;
 constexpr double kBetween = 5.0 * kPixelsPerMillimetre;
+constexpr int kAnywhere = 1 << 20;  // [px]
 constexpr double kPatchHeight = 2.6 * kPixelsPerMillimetre;
 
 LegendEntry::Sample sample_of(Mark mark) {
@@ -27,40 +32,81 @@ std::vector<LegendEntry> category_entries(const Series& series) {
     if (used.count(static_cast<double>(i)) == 0) continue;
     const Category& category = series.categories[i];
     entries.push_back({category.label, sample_of(series.mark), category.ink, series.shape,
-                       series.size, series.opacity, series.dashed});
+                       series.size, series.opacity, series.dash});
   }
   return entries;
 }
 
 bool same(const LegendEntry& a, const LegendEntry& b) {
-  return a.label == b.label && a.sample == b.sample && a.ink == b.ink;
+  return a.label == b.label && a.sample == b.sample && a.ink == b.ink && a.dash == b.dash;
 }
 
-bool has_data(const Series& series) { return !series.x.empty(); }
+bool overlap(const Span& a, double low, double high) { return high >= a.min && low <= a.max; }
+
+/// What a panel shows of its series.
+class View {
+ public:
+  explicit View(const Panel& panel) : x_(x_span(panel)), y_(y_span(panel)) {}
+
+  bool shows(const Series& series) const {
+    for (size_t i = 0; i < series.x.size(); ++i) {
+      if (overlap(x_, series.x[i], series.x[i]) && shows_y(series, i)) return true;
+    }
+    return false;
+  }
+  bool shows(const Shade& shade) const { return overlap(x_, shade.begin, shade.end); }
+
+  /// Something of it is drawn as arrowheads.
+  bool cuts(const Series& series) const {
+    if (series.mark == Mark::band || series.mark == Mark::bars) return false;
+    for (size_t i = 0; i < std::min(series.x.size(), series.y.size()); ++i) {
+      if (!overlap(x_, series.x[i], series.x[i])) continue;
+      if (std::isfinite(series.y[i]) && !overlap(y_, series.y[i], series.y[i])) return true;
+    }
+    return false;
+  }
+
+ private:
+  bool shows_y(const Series& series, size_t i) const {
+    if (!series.lower.empty() && series.mark == Mark::band) {
+      return overlap(y_, series.lower[i], series.upper[i]);
+    }
+    if (series.mark == Mark::bars) return std::isfinite(series.y[i]);
+    return overlap(y_, series.y[i], series.y[i]);
+  }
+
+  Span x_, y_;
+};
+
+double pen_width(const LegendEntry& entry) { return std::max(1.6, entry.size) * kPixelsPerPoint; }
+
+/// Whole strokes of a pattern, as many as make it known, in widths of the line.
+double pattern_length(Dash dash) {
+  const std::vector<double> pattern = dash_pattern(dash);
+  const double period = std::accumulate(pattern.begin(), pattern.end(), 0.0);
+  if (dash == Dash::dots) return 4 * period - pattern.back();
+  if (dash == Dash::dash_dot) return period + pattern.front();
+  return 2 * period - pattern.back();
+}
 
 double sample_width(const LegendEntry& entry) {
-  return entry.sample == LegendEntry::Sample::marker ? kMarkerSample : kSample;
+  if (entry.sample == LegendEntry::Sample::marker) return kMarkerSample;
+  if (entry.sample == LegendEntry::Sample::patch || entry.dash == Dash::none) return kSample;
+  return pattern_length(entry.dash) * pen_width(entry) + 2 * entry.size;
 }
 
-/// One line, or two dashes.
 std::vector<Polyline> line_sample(const LegendEntry& entry, double x, double middle) {
-  const double left = x + entry.size;
-  const double right = x + kSample - entry.size;
-  if (!entry.dashed) return {{{left, middle}, {right, middle}}};
-  const double gap = 0.14 * kSample;
-  return {{{left, middle}, {x + kSample / 2 - gap, middle}},
-          {{x + kSample / 2 + gap, middle}, {right, middle}}};
+  return {{{x + entry.size, middle}, {x + sample_width(entry) - entry.size, middle}}};
 }
 
-void draw_sample(Canvas& canvas, const LegendEntry& entry, double x, double middle) {
-  const cv::Rect everywhere({}, canvas.image().size());
+void draw_sample(Surface& canvas, const LegendEntry& entry, double x, double middle) {
+  const cv::Rect everywhere(0, 0, kAnywhere, kAnywhere);
   const Rgb colour = rgb(entry.ink);
   const cv::Point2d centre(x + kMarkerSample / 2, middle);
   switch (entry.sample) {
     case LegendEntry::Sample::line:
       return canvas.polylines(line_sample(entry, x, middle),
-                              {colour, std::max(1.6, entry.size) * kPixelsPerPoint,
-                               std::max(entry.opacity, 0.5), false},
+                              {colour, pen_width(entry), std::max(entry.opacity, 0.5), entry.dash},
                               everywhere);
     case LegendEntry::Sample::marker:
       return canvas.markers({centre}, entry.shape, std::max(5.5, entry.size) * kPixelsPerPoint,
@@ -75,22 +121,30 @@ void draw_sample(Canvas& canvas, const LegendEntry& entry, double x, double midd
 }  // namespace
 
 std::vector<LegendEntry> legend_entries(const Panel& panel) {
+  const View view(panel);
   std::vector<LegendEntry> entries;
   for (const Series& series : panel.series) {
-    if (!series.in_legend || !has_data(series)) continue;
+    if (!series.in_legend || !view.shows(series)) continue;
     if (!series.categories.empty()) {
       add_missing(category_entries(series), entries);
     } else if (!series.label.empty()) {
       add_missing({{series.label, sample_of(series.mark), series.ink, series.shape, series.size,
-                    series.opacity, series.dashed}},
+                    series.opacity, series.dash}},
                   entries);
     }
   }
   for (const Shade& shade : panel.shades) {
-    if (shade.label.empty()) continue;
+    if (shade.label.empty() || !view.shows(shade)) continue;
     add_missing(
-        {{shade.label, LegendEntry::Sample::patch, shade.ink, Shape::square, 1, 0.25, false}},
+        {{shade.label, LegendEntry::Sample::patch, shade.ink, Shape::square, 1, 0.25, Dash::none}},
         entries);
+  }
+  const bool cut =
+      !panel.equal_aspect && std::any_of(panel.series.begin(), panel.series.end(),
+                                         [&](const Series& series) { return view.cuts(series); });
+  if (cut) {
+    add_missing({{"beyond the axis", LegendEntry::Sample::marker, Ink::gray, Shape::triangle}},
+                entries);
   }
   return entries;
 }
@@ -122,7 +176,7 @@ double Legend::height() const { return rows_ * kRow; }
 
 double Legend::width() const { return width_; }
 
-void Legend::draw(Canvas& canvas, cv::Point2d top_left) const {
+void Legend::draw(Surface& canvas, cv::Point2d top_left) const {
   for (const Placed& placed : placed_) {
     const double x = top_left.x + placed.x;
     const double middle = top_left.y + (placed.row + 0.5) * kRow;

@@ -16,10 +16,11 @@ struct LegendEntry {
   Shape shape = Shape::dot;
   double size = 1;  ///< [pt]
   double opacity = 1;
-  bool dashed = false;
+  Dash dash = Dash::none;
 };
 
-/// One entry a labelled series, fix type or kind of shade, in order; equal ones once.
+/// One entry a labelled series, fix type or kind of shade that is seen within the axes, in order;
+/// equal ones once; at the end one for what lies beyond the axes, if anything does.
 std::vector<LegendEntry> legend_entries(const Panel& panel);
 void add_missing(const std::vector<LegendEntry>& more, std::vector<LegendEntry>& entries);
 
@@ -30,7 +31,7 @@ class Legend {
 
   double height() const;  ///< [px], 0 if there are no entries
   double width() const;   ///< of the longest row [px]
-  void draw(Canvas& canvas, cv::Point2d top_left) const;
+  void draw(Surface& canvas, cv::Point2d top_left) const;
 
  private:
   struct Placed {

@@ -28,7 +28,7 @@ bool is_dark(Rgb c) { return 0.299 * c.red + 0.587 * c.green + 0.114 * c.blue < 
 
 class PanelPainter {
  public:
-  PanelPainter(const PlacedPanel& placed, Canvas& canvas)
+  PanelPainter(const PlacedPanel& placed, Surface& canvas)
       : placed_(placed), panel_(*placed.panel), plot_(placed.plot), canvas_(canvas) {}
 
   void paint() {
@@ -164,8 +164,27 @@ class PanelPainter {
   void curves(const Series& series, const std::vector<Polyline>& lines) {
     const double width = series.size * kPixelsPerPoint;
     if (!series.value.empty()) return coloured_segments(series, width);
-    canvas_.polylines(lines, {rgb(series.ink), width, series.opacity, series.dashed},
+    canvas_.polylines(lines, {rgb(series.ink), width, series.opacity, series.dash},
                       grown(plot_, width / 2));
+    if (!panel_.equal_aspect) excursions(lines, rgb(series.ink));
+  }
+
+  /// Arrowheads where lines leave the axis, one for each time, and none beside another.
+  void excursions(const std::vector<Polyline>& lines, Rgb colour) {
+    const double head = millimetres(1.6);
+    Polyline above, below;
+    const auto add = [head](double at, double level, Polyline& tips) {
+      if (tips.empty() || std::abs(tips.back().x - at) > head) tips.emplace_back(at, level);
+    };
+    for (const Polyline& line : lines) {
+      for (const cv::Point2d& p : line) {
+        if (p.x < plot_.x - 1 || p.x > plot_.br().x + 1) continue;
+        if (p.y < plot_.y - 1) add(p.x, plot_.y, above);
+        if (p.y > plot_.br().y + 1) add(p.x, plot_.br().y, below);
+      }
+    }
+    canvas_.arrowheads(above, true, head, colour, grown(plot_, head));
+    canvas_.arrowheads(below, false, head, colour, grown(plot_, head));
   }
 
   /// Positions by step of the colormap.
@@ -183,7 +202,7 @@ class PanelPainter {
       by_colour[colour_step(series.value[i])].push_back({a, b});
     }
     for (const auto& [step, lines] : by_colour) {
-      canvas_.polylines(lines, {step_colour(step), width, series.opacity, false},
+      canvas_.polylines(lines, {step_colour(step), width, series.opacity, Dash::none},
                         grown(plot_, width / 2));
     }
   }
@@ -245,7 +264,7 @@ class PanelPainter {
       outlines.push_back(std::move(outline));
     }
     const double width = 2.6 * kPixelsPerPoint;
-    canvas_.polylines(outlines, {rgb(series.ink), width, 1, false}, grown(plot_, width));
+    canvas_.polylines(outlines, {rgb(series.ink), width, 1, Dash::none}, grown(plot_, width));
   }
 
   void points(const Series& series) {
@@ -275,7 +294,7 @@ class PanelPainter {
       lines.push_back({{px - cap, high}, {px + cap, high}});
     }
     const Rgb colour = series.mark == Mark::bars ? style::kText : rgb(series.ink);
-    canvas_.polylines(lines, {colour, 1.0 * kPixelsPerPoint, 1, false}, grown(plot_, 2));
+    canvas_.polylines(lines, {colour, 1.0 * kPixelsPerPoint, 1, Dash::none}, grown(plot_, 2));
   }
 
   size_t bar_series() const {
@@ -338,7 +357,8 @@ class PanelPainter {
     const double at = level ? y(line.at) : x(line.at);
     const Polyline ends = level ? Polyline{{double(plot_.x), at}, {double(plot_.br().x), at}}
                                 : Polyline{{at, double(plot_.br().y)}, {at, double(plot_.y)}};
-    canvas_.polylines({ends}, {rgb(line.ink), 1.1 * kPixelsPerPoint, 1, line.dashed}, plot_);
+    const Dash dash = line.dashed ? Dash::dashes : Dash::none;
+    canvas_.polylines({ends}, {rgb(line.ink), 1.1 * kPixelsPerPoint, 1, dash}, plot_);
   }
 
   void reference_label(const ReferenceLine& line) {
@@ -501,7 +521,7 @@ class PanelPainter {
                         {double(area.x), level},
                         {area.x + pixels, level},
                         {area.x + pixels, level - cap}}},
-                      {style::kText, 1.4 * kPixelsPerPoint, 1, false}, plot_);
+                      {style::kText, 1.4 * kPixelsPerPoint, 1, Dash::none}, plot_);
     const bool kilometres = panel_.x.unit == "m" && length >= 1000;
     const std::string text = significant_text(kilometres ? length / 1000 : length, 1) + " " +
                              (kilometres ? "km" : panel_.x.unit);
@@ -530,9 +550,9 @@ class PanelPainter {
   }
 
   void head() {
-    double level = plot_.y - millimetres(2);
+    double level = plot_.y - style::kAboveData - millimetres(1);
     if (placed_.legend) {
-      const double top = plot_.y - millimetres(1) - placed_.legend->height();
+      const double top = plot_.y - style::kAboveData - placed_.legend->height();
       placed_.legend->draw(canvas_, {double(plot_.x), top});
       level = top - millimetres(1);
     }
@@ -546,12 +566,12 @@ class PanelPainter {
   const PlacedPanel& placed_;
   const Panel& panel_;
   const cv::Rect plot_;
-  Canvas& canvas_;
+  Surface& canvas_;
 };
 
 }  // namespace
 
-void paint_panel(const PlacedPanel& placed, Canvas& canvas) {
+void paint_panel(const PlacedPanel& placed, Surface& canvas) {
   PanelPainter(placed, canvas).paint();
 }
 

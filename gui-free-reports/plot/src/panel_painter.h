@@ -6,6 +6,6 @@
 namespace foucault::plot {
 
 /// Draws a panel: shades, heat map, grid, series, lines, axes and texts.
-void paint_panel(const PlacedPanel& placed, Canvas& canvas);
+void paint_panel(const PlacedPanel& placed, Surface& canvas);
 
 }  // namespace foucault::plot

@@ -18,6 +18,8 @@ constexpr double kOuter = millimetres(4);
 constexpr double kPanelGap = millimetres(6);
 constexpr double kStackedGap = millimetres(3);
 constexpr double kTickLength = millimetres(1);
+/// Between the upper end of an axis and words: markers at that end reach beyond it.
+constexpr double kAboveData = millimetres(1.8);
 constexpr double kTextHeight = millimetres(3.6);
 constexpr double kColourBar = millimetres(4);
 

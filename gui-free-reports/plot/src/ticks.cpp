@@ -93,6 +93,15 @@ Ticks log_ticks(double min, double max, int count, const std::string& unit) {
   return result;
 }
 
+Ticks bearing_ticks(double min, double max, int count) {
+  const double least = (max - min) / std::max(1, count);
+  const double step =
+      least < 1 ? round_step(least) : clock_step(least, {1, 2, 5, 10, 15, 30, 45, 90});
+  Ticks result = stepped(min, max, step, decimals_of(step), 1);
+  result.unit = "°";
+  return result;
+}
+
 Ticks duration_ticks(double min, double max, int count) {
   const double largest = std::max(std::abs(min), std::abs(max));
   const double least = (max - min) / std::max(1, count);

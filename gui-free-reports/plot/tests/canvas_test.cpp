@@ -38,7 +38,7 @@ TEST_F(OnPage, ATriangleOverAllBandsGrowsLinearly) {
 
 TEST_F(OnPage, ASlantedLineIsAsWideInEveryRow) {
   const double width = 6;
-  canvas_.polylines({{{50, -100}, {350, 700}}}, {kBlack, width, 1, false}, kAll);
+  canvas_.polylines({{{50, -100}, {350, 700}}}, {kBlack, width, 1, Dash::none}, kAll);
   const double across = width * std::hypot(300, 800) / 800;
   for (const double ink : ink_by_row()) EXPECT_NEAR(ink, across, 0.6);
 }

@@ -54,6 +54,20 @@ TEST_F(LaidOut, OnlyTheLowestPanelsOfASharedAxisHaveLabels) {
   EXPECT_EQ(labels, (std::vector<bool>{false, false, false, true, true}));
 }
 
+TEST_F(LaidOut, PanelsThatShareAnAxisShowTheSameOfIt) {
+  Figure figure = figure_of(2, 1);
+  figure.panels[1] = panel_with({5, 40}, {0, 1});
+  EXPECT_LT(lay_out(figure, typesetter_).panels[0].x.span().max, 20);
+  figure.share_x = true;
+  const Layout layout = lay_out(figure, typesetter_);
+  for (const PlacedPanel& panel : layout.panels) {
+    EXPECT_EQ(panel.x.span().min, layout.panels[0].x.span().min);
+    EXPECT_EQ(panel.x.span().max, layout.panels[0].x.span().max);
+    EXPECT_LE(panel.x.span().min, 0);
+    EXPECT_GE(panel.x.span().max, 40);
+  }
+}
+
 TEST_F(LaidOut, HeightsFollowTheShares) {
   Figure figure = figure_of(2, 1);
   figure.panels[1].height_share = 3;

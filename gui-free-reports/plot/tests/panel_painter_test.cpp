@@ -58,6 +58,20 @@ TEST(PanelPainter, AnnotationsStandOnTheirSideOrTheOtherAtTheBorder) {
   EXPECT_EQ(ink_beside(50, Side::left, kAll), 0) << "outside of the axes";
 }
 
+TEST(PanelPainter, LinesThatLeaveTheAxisAreMarkedThere) {
+  Figure figure = curve({0, 4, 5, 6, 10}, {1, 1, 1, 1, 1});
+  figure.panels[0].y.min = 0;
+  figure.panels[0].y.max = 2;
+  figure.panels[0].series[0].ink = Ink::purple;
+  // Over the middle, where the line itself is beyond the axis.
+  const cv::Rect2d above(0.505, 0, 0.036, 0.4);
+  EXPECT_EQ(drawn(figure, Ink::purple, above), 0);
+  figure.panels[0].series[0].y[2] = -9;
+  EXPECT_EQ(drawn(figure, Ink::purple, above), 0);
+  figure.panels[0].series[0].y[2] = 9;
+  EXPECT_GT(drawn(figure, Ink::purple, above), 30);
+}
+
 TEST(PanelPainter, ShadesReachAsFarAsTheAxes) {
   Figure figure = hidden_curve();
   const auto pale = [&](double begin, double end) {

@@ -63,6 +63,13 @@ TEST(LogTicks, LabelSubdivisionsOfFewDecades) {
   EXPECT_THAT(labels(log_ticks(0.009, 0.06, 5)), ElementsAre("0.01", "0.02", "0.03", "0.05"));
 }
 
+TEST(BearingTicks, DivideACircle) {
+  std::vector<double> places;
+  for (const Tick& tick : bearing_ticks(0, 360, 5).ticks) places.push_back(tick.at);
+  EXPECT_EQ(places, (std::vector<double>{0, 90, 180, 270, 360}));
+  EXPECT_EQ(bearing_ticks(80, 100, 4).ticks.size(), 5U) << "by five";
+}
+
 TEST(DurationTicks, ChooseAUnitThatSuitsAClock) {
   EXPECT_EQ(duration_ticks(0, 120, 6).unit, "s");
   const Ticks minutes = duration_ticks(0, 1800, 6);

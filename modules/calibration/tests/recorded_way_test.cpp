@@ -2,91 +2,125 @@
 
 #include <gtest/gtest.h>
 
-#include <limits>
+#include <map>
+
+#include "foucault/calibration/prediction.h"
+#include "foucault/core/time.h"
+#include "trip.h"
 
 namespace foucault::calibration {
 namespace {
 
-constexpr int64_t kMs = 1'000'000;
+struct Met {
+  Eigen::Vector3d error;  ///< in sigmas that were told
+  Eigen::Matrix3d covariance;
+};
 
-ImuIncrement increment(int64_t begin_ms, int64_t end_ms, double rate = 0.1) {
-  ImuIncrement out;
-  out.t_begin_ns = begin_ms * kMs;
-  out.t_end_ns = end_ms * kMs;
-  out.dtheta_b = {rate * out.dt(), 0, 0};
-  out.dvel_b = {0, 0, -9.8 * out.dt()};
-  return out;
+/// In sigmas of the fix.
+Met in_sigmas(const state::Innovation& z, const Eigen::Matrix3d& R) {
+  const Eigen::Matrix3d L_inverse = Eigen::Matrix3d(R.llt().matrixL()).inverse();
+  return {L_inverse * Eigen::Vector3d(z.value),
+          L_inverse * Eigen::Matrix3d(z.covariance) * L_inverse.transpose()};
 }
 
-state::Epoch epoch(int64_t ms) {
-  state::Epoch out;
-  out.t_ns = ms * kMs;
-  return out;
+Eigen::Matrix3d covariance_of(const measurement::ObservationPtr& fix, const state::NavState& x,
+                              const state::Layout& layout) {
+  return fix->linearize(x, {}, layout).R;
 }
 
-GnssFix fix(int64_t ms) {
-  GnssFix out;
-  out.t_ns = ms * kMs;
-  return out;
-}
-
-TEST(WayRecorder, SumsUpToTwentyMilliseconds) {
-  WayRecorder recorder;
-  recorder.epoch(epoch(0));
-  for (int t = 0; t < 100; t += 5) recorder.add(increment(t, t + 5));
-  const RecordedWay way = *recorder.way();
-  ASSERT_EQ(way.increments.size(), 5u + 2u);  // of 15 ms: a fourth would be 20
-  EXPECT_EQ(way.increments.front().t_begin_ns, 0);
-  EXPECT_EQ(way.increments.back().t_end_ns, 100 * kMs);
-  double angle = 0;
-  for (const ImuIncrement& i : way.increments) angle += i.dtheta_b.x();
-  EXPECT_NEAR(angle, 0.01, 1e-15);
-}
-
-TEST(WayRecorder, BridgesWhatIsMissingWithNoise) {
-  WayRecorder recorder;
-  recorder.epoch(epoch(0));
-  recorder.add(increment(0, 20));
-  recorder.add(increment(520, 540));
-  const RecordedWay way = *recorder.way();
-  ASSERT_EQ(way.increments.size(), 3u);
-  EXPECT_NEAR(way.increments[1].dtheta_b.x(), 0.05, 1e-15);
-  EXPECT_GT(way.increments[1].extra_gyro_noise_density, 0);
-  EXPECT_GT(way.increments[1].extra_accel_noise_density, 0);
-  EXPECT_EQ(way.increments[2].extra_accel_noise_density, 0);
-}
-
-TEST(WayRecorder, EndsAtALongHoleAndLeavesOutWhatIsDamaged) {
-  WayRecorder recorder;
-  recorder.epoch(epoch(0));
-  recorder.add(increment(0, 20));
-  ImuIncrement damaged = increment(20, 40);
-  damaged.dvel_b.x() = std::numeric_limits<double>::quiet_NaN();
-  recorder.add(damaged);
-  recorder.add(increment(10, 30));  // backward
-  recorder.add(increment(20, 40));
-  recorder.add(increment(2000, 2020));
-  recorder.add(increment(2020, 2040));
-  const RecordedWay way = *recorder.way();
-  ASSERT_EQ(way.increments.size(), 2u);
-  EXPECT_EQ(way.increments.back().t_end_ns, 40 * kMs);
-}
-
-TEST(WayRecorder, StartsAMinuteAfterTheRunWithFixesThatWereUsed) {
-  WayRecorder recorder;
-  EXPECT_FALSE(recorder.way());
-  for (int second = 0; second < 70; ++second) {
-    recorder.add(fix(1000 * second));
-    recorder.add(increment(1000 * second, 1000 * (second + 1)));
-    recorder.epoch(epoch(1000 * second + 5500));
-    if (second != 68) recorder.used(1000 * second * kMs);
+/// Two routes: what the filter itself expects of each fix, and what its way gives, gone again with
+/// the same noise. The filter's steps of 0.5 s are the same; nonlinear terms are all that differs.
+TEST(RecordedWay, GoneAgainItMeetsFixesAsTheFilterDid) {
+  Trip trip;
+  trip.scenario.duration_s = 400;
+  std::map<int64_t, Met> met;
+  UnfoldedWay unfolded;
+  ekf::EkfOptions options;
+  options.cov_interval_s = 0.5;
+  WayRecorder filter(trip.told, {}, options, unfolded);
+  trip.drive(filter, [&](const measurement::ObservationPtr& fix) {
+    met[filter.state().t_ns] =
+        in_sigmas(filter.innovation(*fix), covariance_of(fix, filter.state(), {}));
+    filter.update(fix);
+  });
+  const RecordedWay way = folded(unfolded, {});
+  NoiseModel noise;
+  noise.imu = trip.told;
+  const std::vector<Prediction> found = predictions(way, noise, {{}, 0});
+  ASSERT_GT(found.size(), 250u);
+  for (const Prediction& p : found) {
+    EXPECT_LT((p.error - met.at(p.t_ns).error).norm(), 0.02) << p.t_ns;
+    EXPECT_LT((p.covariance - met.at(p.t_ns).covariance).norm() / p.covariance.norm(), 0.01);
   }
-  const RecordedWay way = *recorder.way();
-  EXPECT_EQ(way.start.t_ns, 65500 * kMs);
-  EXPECT_EQ(way.increments.front().t_begin_ns, way.start.t_ns);
-  ASSERT_EQ(way.fixes.size(), 3u);  // 66, 67, 69
-  EXPECT_EQ(way.fixes[2].t_ns, 69000 * kMs);
-  EXPECT_EQ(way.fixes[0].since_first_s, 66);
+}
+
+/// A minute ahead: the filter drives on without fixes.
+TEST(RecordedWay, PredictsAMinuteAheadAsTheFilterDoes) {
+  Trip trip;
+  trip.scenario.duration_s = 300;
+  UnfoldedWay unfolded;
+  ekf::EkfOptions options;
+  options.cov_interval_s = 0.5;
+  WayRecorder filter(trip.told, {}, options, unfolded);
+  ekf::EkfNavigator alone(trip.told, {}, options);
+  const int64_t from_ns = trip.scenario.start_ns() + 200'500'000'000;
+  std::map<int64_t, Met> met;
+  trip.drive(filter, [&](const measurement::ObservationPtr& fix) { filter.update(fix); });
+  trip.drive(alone, [&](const measurement::ObservationPtr& fix) {
+    if (alone.state().t_ns < from_ns) return alone.update(fix);
+    met[alone.state().t_ns] =
+        in_sigmas(alone.innovation(*fix), covariance_of(fix, alone.state(), {}));
+  });
+  NoiseModel noise;
+  noise.imu = trip.told;
+  int compared = 0;
+  for (const Prediction& p : predictions(folded(unfolded, {}), noise, {{5, 15, 30, 60}, 1})) {
+    const auto same = met.find(p.t_ns);
+    const double since = seconds_between(from_ns, p.t_ns);
+    if (p.horizon_s == 0 || same == met.end() || std::abs(since - p.horizon_s + 0.5) > 0.6)
+      continue;
+    ++compared;
+    const double sigma = std::sqrt(p.covariance.trace());
+    EXPECT_LT((p.error - same->second.error).norm(), 0.02 * sigma) << p.horizon_s;
+    EXPECT_LT((p.covariance - same->second.covariance).norm(), 0.03 * p.covariance.norm());
+  }
+  EXPECT_GE(compared, 4);
+}
+
+/// Slow blocks are an input: the way of a filter that still learns a lever arm is that of one that
+/// knew it.
+TEST(RecordedWay, SlowBlocksAreWhatTheyCameToBe) {
+  Trip trip;
+  trip.scenario.duration_s = 600;
+  trip.scenario.lever_arm_error_m = {0.3, -0.2, 0};
+  state::Layout layout;
+  layout.add(state::block::lever_arm, 0.5);
+  NoiseModel noise;
+  noise.imu = trip.told;
+  const auto size = [&](const RecordedWay& way) {
+    return normalized_errors(predictions(way, noise, {{}, 0})).front().mean;
+  };
+  EXPECT_NEAR(size(trip.way(layout)), 1, 0.1);
+  EXPECT_GT(size(trip.way()), 2);  // the negative control: nothing was learned
+}
+
+TEST(RecordedWay, IsEmptyIfARunEndsWithinAMinute) {
+  Trip trip;
+  trip.scenario.duration_s = 55;
+  EXPECT_TRUE(trip.way().empty());
+}
+
+TEST(RecordedWay, RemembersWhatSigmasWereTold) {
+  Trip trip;
+  trip.scenario.duration_s = 120;
+  trip.told_sigma_factor = 3;
+  const RecordedWay way = trip.way();
+  Trip other = trip;
+  other.told_sigma_factor = 1;
+  EXPECT_NEAR(told_sigma(way, NoiseOf::position)[0] / told_sigma(other.way(), NoiseOf::position)[0],
+              3, 1e-9);
+  EXPECT_EQ(told_sigma(way, NoiseOf::wheel), Eigen::Vector3d::Zero());
+  EXPECT_NEAR(length_s(way), 60, 2);
 }
 
 }  // namespace

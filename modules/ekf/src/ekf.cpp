@@ -49,9 +49,9 @@ void EkfNavigator::catch_up() {
   const StageTimer timer(Stage::covariance);
   const ekf::Transition t = pending();
   covariance_ = ekf::propagated(covariance_, t);
+  stepped({integrals_, covered_, state_, t.phi});
   covered_ = state_;
   integrals_ = {};
-  stepped(t.phi);
 }
 
 state::StateMatrix EkfNavigator::covariance() const {

@@ -191,6 +191,13 @@ void turn_attitude_to_body(const Eigen::Matrix3d& C0, const Eigen::Matrix3d& C1,
 
 }  // namespace
 
+Phi Phi::identity(Eigen::Index size) {
+  Phi phi;
+  phi.motion.setIdentity(state::kMotionSize, size);
+  phi.decay.setOnes(size - state::kMotionSize);
+  return phi;
+}
+
 state::StateMatrix Phi::full() const {
   const Eigen::Index size = motion.cols();
   state::StateMatrix phi = state::StateMatrix::Zero(size, size);

@@ -82,7 +82,7 @@ bool RtsRecorder::at_node() const {
   return !nodes_.empty() && nodes_.back().filtered.t_ns == state().t_ns;
 }
 
-void RtsRecorder::stepped(const ekf::Phi& phi) { phi_ = phi * phi_; }
+void RtsRecorder::stepped(const Step& step) { phi_ = step.phi * phi_; }
 
 void RtsRecorder::add_node() {
   RtsNode& node = nodes_.emplace_back();
@@ -90,10 +90,7 @@ void RtsRecorder::add_node() {
   node.predicted_covariance = node.filtered_covariance = state::PackedSymmetric(covariance());
   node.motion = phi_.motion;
   node.decay = phi_.decay;
-  phi_.motion.setIdentity(state::MotionByState::RowsAtCompileTime,
-                          state::state_size(state().slow.size()));
-  phi_.decay = state::sensor_part(
-      state::StateVector(state::StateVector::Ones(state::state_size(state().slow.size()))));
+  phi_ = ekf::Phi::identity(state::state_size(state().slow.size()));
 }
 
 }  // namespace foucault::ekf

@@ -19,6 +19,8 @@ void AidOptions::fields(ConfigFields& f) {
   f.optional_number("nonholonomic_sigma_m_s", nonholonomic_sigma_m_s, kPositive,
                     "sigma of the mean velocity to the right and downward over a second; not set: "
                     "as the recording shows");
+  f.optional_number("nonholonomic_down_sigma_m_s", nonholonomic_down_sigma_m_s, kPositive,
+                    "the same downward alone; not set: as to the right");
   f.text("wheel_speed", wheel_speed, {"auto", "on", "off"},
          "speed of the wheels; auto: once it was found to be that of the vehicle");
   f.optional_number("wheel_speed_sigma_m_s", wheel_speed_sigma_m_s, kPositive,

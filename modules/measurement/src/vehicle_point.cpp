@@ -28,6 +28,16 @@ VehiclePoint vehicle_point(const BodyStretch& stretch, const Eigen::Matrix3d& C_
     state::columns_of(point.H, *mounting) =
         -(M * so3::skew(told_v) * so3::right_jacobian(turn)).rightCols<2>();
   }
+  const Eigen::Vector3d told_rate_v = C_v_b * omega_b;
+  point.turn_rate = (M * told_rate_v).z();
+  point.turn_rate_gradient.setZero(layout.size());
+  state::part(point.turn_rate_gradient, state::block::gyro_bias) = -by_b.row(2).transpose();
+  if (mounting) {
+    state::part(point.turn_rate_gradient, *mounting) =
+        -(M * so3::skew(told_rate_v) * so3::right_jacobian(turn))
+             .bottomRightCorner<1, 2>()
+             .transpose();
+  }
   return point;
 }
 

@@ -11,6 +11,8 @@ namespace foucault::measurement {
 struct VehiclePoint {
   Eigen::Vector3d velocity_v;
   state::RowsByState<3> H;  ///< by all blocks of the layout
+  double turn_rate = 0;     ///< mean, about the vehicle's downward axis [rad/s]
+  state::StateVector turn_rate_gradient;
 };
 VehiclePoint vehicle_point(const BodyStretch& stretch, const Eigen::Matrix3d& C_v_b,
                            const state::NavState& x, const state::Layout& layout);

@@ -154,7 +154,8 @@ std::optional<Eigen::Vector2d> Aiding::slip_sigma() const {
   const std::optional<diagnosis::SlipFindings>& found = slip_.slip();
   if (aids.nonholonomic != "on" && (!found || found->white.minCoeff() > kMostSlip))
     return std::nullopt;
-  if (aids.nonholonomic_sigma_m_s) return Eigen::Vector2d::Constant(*aids.nonholonomic_sigma_m_s);
+  if (const std::optional<double> right = aids.nonholonomic_sigma_m_s)
+    return Eigen::Vector2d(*right, aids.nonholonomic_down_sigma_m_s.value_or(*right));
   if (!found) return Eigen::Vector2d::Constant(kUsualSlip);
   return found->white;
 }

@@ -14,8 +14,10 @@ void CalibrateOptions::fields(ConfigFields& f) {
          "what of one axis of the gyroscopes shows on another");
   f.text("accel_cross_axis", accel_cross_axis, {"auto", "on", "off"},
          "the same of the accelerometers");
-  f.text("imu_noise", imu_noise, {"auto", "on", "off"},
-         "noise of the IMU (imu.*), raised where the recording contradicts it");
+  f.text("noise", noise, {"auto", "on", "off"},
+         "noise of IMU, fixes and wheels from the recording: on; auto: where it contradicts what "
+         "was told");
+  f.replaced("imu_noise", "calibrate.noise (auto | on | off)");
   f.text("lever_arm", lever_arm, {"auto", "on", "off"},
          "IMU to antenna, what it was given wrong by");
   f.text("time_offset", time_offset, {"auto", "on", "off"},
@@ -27,6 +29,8 @@ void CalibrateOptions::fields(ConfigFields& f) {
   f.text("wheel_scale", wheel_scale, {"auto", "on", "off"}, "of the speed that wheels tell");
   f.text("wheel_lever_arm", wheel_lever_arm, {"auto", "on", "off"},
          "IMU to the point of the vehicle that does not slip sideways");
+  f.text("cornering_compliance", cornering_compliance, {"auto", "on", "off"},
+         "angle by which that point drifts outward in a bend, by its acceleration");
   f.optional_number(
       "lever_arm_sigma_m", lever_arm_sigma_m, kPositive,
       "what is known of the lever arm before, 1 sigma an axis; not set: 0.05 where it "
@@ -41,6 +45,8 @@ void CalibrateOptions::fields(ConfigFields& f) {
            "what is known of the scale of the wheels' speed before, 1 sigma");
   f.number("wheel_lever_arm_sigma_m", wheel_lever_arm_sigma_m, kPositive,
            "what is known of the point that does not slip before, 1 sigma an axis");
+  f.number("cornering_compliance_sigma", cornering_compliance_sigma, kPositive,
+           "what is known of that before, 1 sigma [rad/(m/s^2)]");
   f.number("gyro_scale_sigma_ppm", gyro_scale_sigma_ppm, kPositive,
            "what is known of the gyroscopes' before, 1 sigma");
   f.number("accel_scale_sigma_ppm", accel_scale_sigma_ppm, kPositive,
@@ -60,11 +66,11 @@ CalibrateOptions CalibrateOptions::resolved(const Carried& carried) const {
   const auto resolve = [](std::string& choice, bool on) {
     if (choice == "auto") choice = on ? "on" : "off";
   };
-  for (std::string* always : {&out.imu_noise, &out.gyro_scale, &out.accel_scale, &out.lever_arm,
+  for (std::string* always : {&out.noise, &out.gyro_scale, &out.accel_scale, &out.lever_arm,
                               &out.time_offset, &out.time_drift})
     resolve(*always, true);
   for (std::string* rare : {&out.gyro_cross_axis, &out.accel_cross_axis}) resolve(*rare, false);
-  for (std::string* rolling : {&out.mounting, &out.wheel_lever_arm})
+  for (std::string* rolling : {&out.mounting, &out.wheel_lever_arm, &out.cornering_compliance})
     resolve(*rolling, carried.rolling || carried.wheel_speed);
   resolve(out.wheel_scale, carried.wheel_speed);
   return out;
@@ -87,6 +93,8 @@ Layout CalibrateOptions::layout() const {
     layout.add(block::accel_cross_axis, kPpm * accel_cross_axis_sigma_ppm, scale_tau_s);
   if (mounting == "on") layout.add(block::mounting, kDegree * mounting_sigma_deg);
   if (wheel_lever_arm == "on") layout.add(block::wheel_lever_arm, wheel_lever_arm_sigma_m);
+  if (cornering_compliance == "on")
+    layout.add(block::cornering_compliance, cornering_compliance_sigma);
   if (wheel_scale == "on") layout.add(block::wheel_scale, wheel_scale_sigma);
   return layout;
 }

@@ -65,7 +65,7 @@ TEST(CalibrateOptions, AreWrittenAndReadAgain) {
 TEST(CalibrateOptions, RefuseWhatTheyDoNotKnow) {
   for (const char* setting :
        {"mode=all", "gyro_scale=yes", "gyro_scale_sigma_ppm=0", "accel_scale_sigma_ppm=-1",
-        "scale_tau_s=0", "wheel=on", "imu_noise=maybe"}) {
+        "scale_tau_s=0", "wheel=on", "noise=maybe"}) {
     CalibrateOptions options;
     EXPECT_THROW(set_config(setting, options), UsageError) << setting;
   }

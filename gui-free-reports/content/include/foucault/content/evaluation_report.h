@@ -16,6 +16,8 @@ struct OutageCurve {
   std::vector<double> since_begin_s;  ///< increasing
   std::vector<double> horizontal_m;
   std::vector<double> vertical_m;  ///< absolute
+  std::vector<double> north_m;     ///< of the horizontal error
+  std::vector<double> east_m;
   double max_horizontal_m = 0;
   double max_vertical_m = 0;
 };
@@ -62,6 +64,7 @@ struct ErrorTimeline {
   std::string name;  ///< of the recording
   std::vector<TimeSpan> outages;
   std::vector<Curve> curves;
+  std::string subtitle = {};  ///< also says which shift of the outages is shown
 };
 
 /// A path over the ground, relative to a common start [m]. Not finite: a gap.
@@ -80,6 +83,7 @@ struct OutageMap {
   GroundPath truth;
   GroundPath truth_in_outages;  ///< a gap between two
   std::vector<Estimate> estimates;
+  std::string subtitle = {};  ///< as in ErrorTimeline
 };
 
 /// Drift against the distance from the start of the recording at which an outage begins.
@@ -125,6 +129,11 @@ plot::Figure maximum_drifts(const DriftCase& drift_case, const MethodOrder& orde
 plot::Figure drift_distribution(const DriftCase& drift_case, const MethodOrder& order);
 /// RMS over the outages against time, both axes logarithmic.
 plot::Figure drift_growth(const DriftCase& drift_case, const MethodOrder& order);
+/// The way of the error over the ground in single outages, all at one scale.
+plot::Figure outage_errors(const DriftCase& drift_case, const MethodOrder& order);
+/// Where the errors are at the end of the outages, with the ellipse that holds 95 % of as many as
+/// they spread; a panel a method.
+plot::Figure end_errors(const DriftCase& drift_case, const MethodOrder& order);
 /// Table III as grouped bars with intervals.
 plot::Figure drift_bars(const std::vector<DriftRms>& rms, const MethodOrder& order);
 /// Largest drift of each outage and its RMS in bins, on a logarithmic axis.
@@ -151,6 +160,15 @@ struct ParameterMap {
 
 plot::Figure parameter_map(const ParameterMap& map);
 
+/// RMS of the largest drifts with everything in use, or without one part.
+struct AblationBar {
+  std::string method;
+  std::string without;  ///< empty: nothing
+  double horizontal_m = 0;
+  double vertical_m = 0;
+};
+plot::Figure ablation_bars(const std::vector<AblationBar>& bars, const MethodOrder& order);
+
 /// Everything an evaluation shows.
 struct EvaluationReport {
   std::string title = "Outage evaluation";
@@ -159,6 +177,7 @@ struct EvaluationReport {
   std::vector<std::string> remarks;  ///< paragraphs at the top: what was done, what was not
   std::vector<page::KeyNumber> key_numbers;
   std::vector<page::Table> tables;
+  std::vector<AblationBar> ablation;
   std::vector<DriftRms> rms;
   std::vector<DriftCase> cases;
   std::vector<DistanceDrift> distances;  ///< if recordings go far enough

@@ -43,6 +43,9 @@ class RunReport : public state::Sink {
   RunReport(RunLabels labels, const state::Mounting& mounting, const state::Told& told = {});
   ~RunReport() override;
 
+  /// The first stamp of the recording: times in the report count from there.
+  void start(int64_t t_ns);
+
   void epoch(const state::Epoch& epoch) override;
   void fix(const state::FixResult& fix) override;
   void observation(const state::ObservationResult& result) override;
@@ -59,7 +62,10 @@ class RunReport : public state::Sink {
   /// The kinds of observations that are shown, in this order.
   void aid(const AidSummary& aid);
 
-  /// End of an IMU sample's interval, for the sampling statistics.
+  /// What sensors told, before an estimator makes something of it.
+  void measurement(const Measurement& measurement);
+
+  /// End of an IMU sample's interval, for the sampling statistics; measurement() does it.
   void imu_stamp(int64_t t_ns);
 
   /// A stretch in which fixes were withheld on purpose; shaded in every figure over time.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <utility>
@@ -8,7 +9,8 @@
 #include "foucault/plot/figure.h"
 
 /// A report folder: index.html, which opens from disk with no network, and beside it every figure
-/// as PNG, CSV and JSON.
+/// as PNG, SVG, CSV and JSON. Figures are live (zoom, values under the cursor) where scripts run,
+/// else and in print the images.
 namespace foucault::page {
 
 /// A number a reader looks for first, shown large.
@@ -52,6 +54,8 @@ struct Listing {
 struct ReportPage {
   std::string title;
   std::string subtitle;
+  /// The stamp at which the axes over time begin, if they have one: cursors tell the clock there.
+  std::optional<int64_t> start_ns = {};
   std::optional<Banner> banner = {};
   std::vector<KeyNumber> key_numbers;
   std::vector<Section> sections;
@@ -62,7 +66,7 @@ struct ReportPage {
 /// Writes `folder` (e.g. DIR/report): drawn beside it, then renamed, so that it appears whole or
 /// not at all and replaces an older one. Figures are numbered over the whole page. Throws DataError
 /// if it cannot be written or a figure name occurs twice.
-void write_report(const ReportPage& page, const std::string& folder);
+void write_report(ReportPage page, const std::string& folder);
 
 /// Reads the page and the numbers back from `folder` and draws all of it again: the same bytes.
 /// Throws DataError if the folder holds no report.

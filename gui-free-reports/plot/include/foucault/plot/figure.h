@@ -15,12 +15,14 @@ namespace foucault::plot {
 constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
 
 enum class Mark { line, points, steps, bars, band };
+/// How a line is broken, so that lines are told apart without colours.
+enum class Dash { none, dashes, long_dashes, dots, dash_dot };
 /// `frame` surrounds a cell of a heat map and has no size of its own.
 enum class Shape { dot, ring, cross, plus, triangle, square, diamond, star, tick, frame };
 
 /// What the automatic range of the y axis takes from a series: all of it, all but far outliers
 /// (half as much again as the range of 99 %), its typical part (10 % to 90 %), or nothing. Points
-/// outside the range are drawn as arrowheads on the border.
+/// outside the range, and where lines leave it, are drawn as arrowheads on the border.
 enum class RangeRole { full, most, typical, none };
 
 /// One of the kinds of point within a series, e.g. a fix type.
@@ -38,7 +40,7 @@ struct Series {
   Shape shape = Shape::dot;
   double size = 1.2;  ///< line width or marker diameter [pt]
   double opacity = 1;
-  bool dashed = false;
+  Dash dash = Dash::none;
   bool in_legend = true;
   bool value_labels = false;  ///< the number above each bar
   RangeRole range_role = RangeRole::full;
@@ -50,10 +52,12 @@ struct Series {
   std::vector<double> category = {};  ///< index in `categories` of each point, or empty
   std::vector<Category> categories = {};
   std::vector<double> value = {};  ///< drawn through the colormap, or empty
+  std::vector<double> time = {};   ///< of points of a path [s since the start], or empty; not drawn
 };
 
-/// Linear; logarithmic; seconds shown as s, min or h; or named places 0, 1, 2, ...
-enum class AxisKind { linear, log, duration, category };
+/// Linear; logarithmic; seconds shown as s, min or h; named places 0, 1, 2, ...; or degrees of a
+/// circle.
+enum class AxisKind { linear, log, duration, category, bearing };
 
 struct Axis {
   std::string label = {};

@@ -29,6 +29,9 @@ class Renderer {
   /// The figure as a PNG file's content. Throws DataError if columns of a series differ in length.
   std::vector<unsigned char> png(const Figure& figure);
 
+  /// The same as vectors, for papers.
+  std::string svg(const Figure& figure);
+
  private:
   class Implementation;
   std::unique_ptr<Implementation> implementation_;

@@ -26,6 +26,9 @@ Ticks linear_ticks(double min, double max, int count, double factor = 1,
 /// Powers of ten, or 1, 2, 5 where there are few; minor ticks between. 0 < min < max.
 Ticks log_ticks(double min, double max, int count, const std::string& unit = {});
 
+/// Degrees in steps that suit a circle: 90, 45, 30 and below.
+Ticks bearing_ticks(double min, double max, int count);
+
 /// Seconds in steps that suit a clock, shown in s (up to 5 min), min (up to 5 h) or h.
 Ticks duration_ticks(double min, double max, int count);
 

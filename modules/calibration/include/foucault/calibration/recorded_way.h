@@ -1,50 +1,105 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <vector>
 
-#include "foucault/core/measurement.h"
-#include "foucault/state/epoch.h"
+#include "foucault/ekf/ekf.h"
+#include "foucault/measurement/observation.h"
+#include "foucault/state/blocks.h"
 
+/// A run of a filter as a linear system. Transitions of errors, residuals about the nominal state
+/// and what a unit of white noise drives into the state do not depend on how large the noise is: a
+/// recording is gone again in a hundredth of the time, with any.
 namespace foucault::calibration {
 
-/// A start, and what was measured on the way from it: to be gone again, often and quickly.
-struct RecordedWay {
-  state::Epoch start;
-  std::vector<ImuIncrement> increments;  ///< each begins where the last ended
-  std::vector<GnssFix> fixes;            ///< in order of stamps, later than the start
+/// Whose noise a measurement has.
+enum class NoiseOf { position, velocity, slip, wheel, rest };
+
+/// Something measured at a node: r = H error + noise, by rows whose noise is white, of one, as it
+/// was told. Afterwards the nominal state was moved by `correction`.
+struct WayMeasurement {
+  NoiseOf kind = NoiseOf::position;
+  int rows = 0;                                 ///< 1 to 3
+  Eigen::Vector3d r = Eigen::Vector3d::Zero();  ///< those beyond are zero
+  state::RowsByNode<3> H = state::RowsByNode<3>::Zero();
+  Eigen::Matrix3d by_sigmas = Eigen::Matrix3d::Zero();   ///< of an error of one sigma, by axis of n
+  Eigen::Vector3d told_sigma = Eigen::Vector3d::Zero();  ///< of each row as it was measured
+  state::NodeVector correction = state::NodeVector::Zero();
 };
 
-/// Keeps the way of a run. Increments are summed up to 20 ms, within which only vibration turns;
-/// a missing second and less is bridged by the rates before it, with noise of as much; at more, or
-/// after half an hour, or where increments do not follow each other, the way ends. 100 bytes each:
-/// 9 MB in all at most.
-class WayRecorder {
- public:
-  /// Every epoch of the run. The start is the first one a minute after the run's, when attitude and
-  /// biases are settled and a filter is as linear as it takes itself to be; of a shorter run the
-  /// first.
-  void epoch(const state::Epoch& epoch);
-  /// What came before the start, too, since a run finds its start late.
-  void add(const Measurement& measurement);
-  /// A fix that the run used.
-  void used(int64_t t_ns) { used_.push_back(t_ns); }
+/// An instant at which something was measured or a second had passed:
+/// error = (motion; decay) * error at the node before + input + noise.
+struct WayNode {
+  int64_t t_ns = 0;
+  double dt = 0;                                ///< since the node before [s]
+  bool begins = false;                          ///< nothing comes from the node before
+  std::optional<state::NodeMatrix> covariance;  ///< where it begins; elsewhere what was added to it
+  state::RowsByNode<state::MotionVector::RowsAtCompileTime> motion =
+      state::RowsByNode<state::MotionVector::RowsAtCompileTime>::Zero();
+  state::BiasVector decay = state::BiasVector::Ones();  ///< of the biases
+  state::MotionVector input =
+      state::MotionVector::Zero();  ///< of slow blocks, which are at what they came to be
+  /// Covariance that a unit of white noise drives [rad/s, m/s^2]
+  state::MotionMatrix by_gyro = state::MotionMatrix::Zero(), by_accel = state::MotionMatrix::Zero();
+  std::vector<WayMeasurement> measured;  ///< in the order of use
+};
 
-  /// None without a start.
-  std::optional<RecordedWay> way() const;
+using RecordedWay = std::vector<WayNode>;
+
+/// What the recorder leaves, with slow blocks as they were on the way.
+struct UnfoldedNode {
+  struct Measured {
+    NoiseOf kind;
+    state::Linearized z;
+    state::SlowVector slow;
+    state::NodeVector correction;
+  };
+  WayNode node;
+  state::MotionByState motion;
+  state::SlowVector slow;  ///< at the node before
+  std::vector<Measured> measured;
+};
+using UnfoldedWay = std::vector<UnfoldedNode>;
+
+/// The EKF, that leaves a way. It begins a minute after the run, when attitude and biases are
+/// settled and errors are as linear as the filter takes them to be, and ends an hour later, or
+/// after fifty thousand nodes of 4 kB each.
+class WayRecorder final : public ekf::EkfNavigator {
+ public:
+  /// `way` gets the nodes and must outlive this.
+  WayRecorder(const imu::ImuNoise& imu, const state::Layout& layout, const ekf::EkfOptions& options,
+              UnfoldedWay& way);
+
+  void start(const state::Epoch& initial) override;
+  void update(const measurement::ObservationPtr& observation) override;
+  void loosen(const state::NodeMatrix& added) override;
+  void hold() override;
+
+ protected:
+  void stepped(const Step& step) override;
 
  private:
-  void add_increment(const ImuIncrement& increment);
-  void bridge(const ImuIncrement& next);
+  bool records() const;
+  void begin_node();
+  void add_node();
 
-  std::optional<state::Epoch> start_;
-  bool settled_ = false;
-  std::vector<ImuIncrement> increments_;
-  std::vector<GnssFix> fixes_;
-  std::vector<int64_t> used_;
-  bool ended_ = false;
+  UnfoldedWay& way_;
+  std::optional<int64_t> first_ns_;
+  int64_t node_ns_ = 0;
+  bool begins_ = true;
+  UnfoldedNode next_;
+  ekf::Phi phi_;  ///< since the last node
 };
+
+/// The way with slow blocks known to be `slow`, what they lacked on it as an input. Measurements of
+/// more than three rows are left out.
+RecordedWay folded(const UnfoldedWay& way, const state::SlowVector& slow);
+
+/// Root mean square of the sigmas that were told with measurements of a kind, by row; zero of none.
+Eigen::Vector3d told_sigma(const RecordedWay& way, NoiseOf kind);
+
+/// Time on the way [s].
+double length_s(const RecordedWay& way);
 
 }  // namespace foucault::calibration

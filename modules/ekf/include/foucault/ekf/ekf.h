@@ -42,12 +42,18 @@ class EkfNavigator : public measurement::Navigator {
  protected:
   /// Brings the covariance to the current time.
   void catch_up();
-  /// Told of every step of the covariance.
-  virtual void stepped(const ekf::Phi& /*phi*/) {}
+  /// A step of the covariance.
+  struct Step {
+    const ekf::MotionIntegrals& integrals;
+    const state::NavState &begin, &end;
+    const ekf::Phi& phi;
+  };
+  /// Told of every one.
+  virtual void stepped(const Step& /*step*/) {}
+  state::Linearized linearize(const measurement::Observation& observation) const;
 
  private:
   ekf::Transition pending() const;
-  state::Linearized linearize(const measurement::Observation& observation) const;
 
   ekf::ProcessNoise noise_;
   double cov_interval_;

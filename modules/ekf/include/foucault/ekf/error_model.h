@@ -43,6 +43,7 @@ struct Phi {
   state::MotionByState motion;
   state::StateVector decay;
 
+  static Phi identity(Eigen::Index size);  ///< size: rows of the state
   state::StateMatrix full() const;
 };
 Phi operator*(const Phi& later, const Phi& earlier);

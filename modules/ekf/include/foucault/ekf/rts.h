@@ -43,7 +43,7 @@ class RtsRecorder : public EkfNavigator, public measurement::Recording {
   std::deque<measurement::SmoothedEpoch> smoothed() override { return smooth(std::move(nodes_)); }
 
  protected:
-  void stepped(const ekf::Phi& phi) override;
+  void stepped(const Step& step) override;
 
  private:
   void add_node();

@@ -18,10 +18,11 @@ class AidOptions : public Configurable {
   std::optional<double> gnss_velocity_sigma_m_s;
   std::string zero_velocity = "off";  ///< auto | on | off
   double zero_velocity_sigma_m_s = 0.02;
-  std::string nonholonomic = "off";              ///< auto | on | off
-  std::optional<double> nonholonomic_sigma_m_s;  ///< not set: as the recording shows
-  std::string wheel_speed = "off";               ///< auto | on | off
-  std::optional<double> wheel_speed_sigma_m_s;   ///< not set: as the recording shows
+  std::string nonholonomic = "off";                   ///< auto | on | off
+  std::optional<double> nonholonomic_sigma_m_s;       ///< not set: as the recording shows
+  std::optional<double> nonholonomic_down_sigma_m_s;  ///< not set: as to the right
+  std::string wheel_speed = "off";                    ///< auto | on | off
+  std::optional<double> wheel_speed_sigma_m_s;        ///< not set: as the recording shows
 
   void fields(ConfigFields& f) override;
   /// Takes off a fix what is not to be used of it.

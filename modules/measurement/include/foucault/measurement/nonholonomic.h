@@ -6,7 +6,9 @@
 namespace foucault::measurement {
 
 /// Wheels roll forward: the velocity of the point that does not slip, to the right and downward, is
-/// zero on the mean of a stretch. Blocks: mounting, wheel_lever_arm.
+/// zero on the mean of a stretch; with a cornering compliance k that to the right is -k a u, u the
+/// forward speed, a = u times the turn rate the acceleration to the right, of the means. Blocks:
+/// mounting, wheel_lever_arm, cornering_compliance.
 class Nonholonomic final : public Observation {
  public:
   /// sigma: of the mean to the right and of that downward [m/s].

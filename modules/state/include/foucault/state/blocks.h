@@ -25,7 +25,7 @@ struct NodeBlock : Block {
 
 constexpr int kMotionSize = 9;  ///< rows of position, velocity and attitude
 constexpr int kNodeSize = 15;
-constexpr int kMostSlow = 26;                     ///< rows of slow blocks
+constexpr int kMostSlow = 27;                     ///< rows of slow blocks
 constexpr int kMostSize = kNodeSize + kMostSlow;  ///< rows of a state
 
 /// Rows of a state with so many rows of slow blocks.
@@ -61,6 +61,9 @@ inline constexpr Block mounting{"mounting", 2, "rad"};
 inline constexpr Block wheel_scale{"wheel_scale", 1, "1"};
 /// IMU to the point of the vehicle that does not slip sideways; in b.
 inline constexpr Block wheel_lever_arm{"wheel_lever_arm", 3, "m"};
+/// That point drifts outward in a bend, by an angle of so much times its acceleration to the side:
+/// tyres are springs.
+inline constexpr Block cornering_compliance{"cornering_compliance", 1, "rad/(m/s^2)"};
 }  // namespace block
 
 using NodeVector = Eigen::Matrix<double, kNodeSize, 1>;
@@ -68,6 +71,12 @@ using NodeMatrix = Eigen::Matrix<double, kNodeSize, kNodeSize>;
 using NodeRow = Eigen::Matrix<double, 1, kNodeSize>;
 template <int kColumns>
 using NodeBy = Eigen::Matrix<double, kNodeSize, kColumns>;
+
+template <int kRows>
+using RowsByNode = Eigen::Matrix<double, kRows, kNodeSize>;
+using MotionVector = Eigen::Matrix<double, kMotionSize, 1>;
+using MotionMatrix = Eigen::Matrix<double, kMotionSize, kMotionSize>;
+using BiasVector = Eigen::Matrix<double, kNodeSize - kMotionSize, 1>;
 
 /// Of the slow blocks, on the stack.
 using SlowVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMostSlow, 1>;
@@ -135,6 +144,15 @@ template <class Matrix>
 auto slow_by_node(Matrix&& m) {
   return m.bottomLeftCorner(m.rows() - kNodeSize, kNodeSize);
 }
+template <class Matrix>
+auto node_columns(Matrix&& m) {
+  return m.template leftCols<kNodeSize>();
+}
+template <class Matrix>
+auto motion_columns(Matrix&& m) {
+  return m.template leftCols<kMotionSize>();
+}
+
 /// What of a vector is not motion: biases and slow blocks.
 template <class Vector>
 auto sensor_part(Vector&& v) {

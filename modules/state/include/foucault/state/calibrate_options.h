@@ -15,10 +15,11 @@ class CalibrateOptions : public Configurable {
   /// auto | on | off
   std::string gyro_scale = "auto", accel_scale = "auto";
   std::string gyro_cross_axis = "off", accel_cross_axis = "off";
-  std::string imu_noise = "off";  ///< no block: raised where the recording contradicts it
+  std::string noise = "auto";  ///< no block: of IMU, fixes and wheels, from the recording
   std::string lever_arm = "auto";
   std::string time_offset = "auto", time_drift = "auto";
   std::string mounting = "auto", wheel_scale = "auto", wheel_lever_arm = "auto";
+  std::string cornering_compliance = "auto";
   /// Not set: 5 cm where the lever arm was given in the import, else 1 m.
   std::optional<double> lever_arm_sigma_m;
   double time_offset_sigma_s = 0.3;
@@ -26,6 +27,7 @@ class CalibrateOptions : public Configurable {
   double mounting_sigma_deg = 10;
   double wheel_scale_sigma = 0.05;
   double wheel_lever_arm_sigma_m = 1.5;
+  double cornering_compliance_sigma = 0.005;  ///< rear axles of cars have 1 to 8 mrad per m/s^2
   double gyro_scale_sigma_ppm = 1000;
   double accel_scale_sigma_ppm = 1000;
   double gyro_cross_axis_sigma_ppm = 1000;

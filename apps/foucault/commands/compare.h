@@ -1,0 +1,9 @@
+#pragma once
+
+#include "command.h"
+
+namespace foucault::app {
+
+std::function<void(Call&)> declare_compare(CLI::App& app);
+
+}  // namespace foucault::app

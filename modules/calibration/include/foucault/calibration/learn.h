@@ -1,0 +1,53 @@
+#pragma once
+
+#include <vector>
+
+#include "foucault/calibration/prediction.h"
+
+/// Noise from the recording itself.
+namespace foucault::calibration {
+
+struct LearnOptions {
+  std::vector<NoiseAxis> axes;
+  double told_within = 10;  ///< factor within which the told noise is right, 1 sigma
+  /// Errors of fixes last and errors of an IMU are richer than its model: a noise that fits from
+  /// fix to fix can be wrong over a minute. All horizons, and that of the next fix, count alike.
+  std::vector<double> horizons_s = {5, 15, 30, 60};
+  /// Of predictions, at least 5 s and at most 60 s apart; a quarter of them until the top is near.
+  int starts = 60;
+};
+
+/// One number that was to be learned.
+struct LearnedAxis {
+  NoiseAxis axis;
+  double told = 0, value = 0;
+  double log_sigma = 0;    ///< of the logarithm, by the curvature of the likelihood
+  bool observable = true;  ///< the recording tells at least half of what is known of it
+};
+
+struct Learned {
+  NoiseModel noise;
+  std::vector<LearnedAxis> axes;
+  double gain = 0;  ///< of the logarithm of likelihood and prior over that of the told noise
+  int passes = 0;
+  std::vector<NormalizedError> before, after;  ///< with the told and with the learned noise
+};
+
+/// What there is to learn from the ways.
+struct NoiseAxes {
+  std::vector<NoiseAxis> told;     ///< IMU, and fixes
+  std::vector<NoiseAxis> of_aids;  ///< what nobody tells: slip, wheels
+
+  std::vector<NoiseAxis> all() const;
+};
+NoiseAxes axes_of(const std::vector<RecordedWay>& ways);
+
+/// Maximum of the densities of all predictions, times a log-normal prior about what was told, by
+/// Fisher's scoring: gradient and information from the derivatives of errors and covariances
+/// (differences), as of independent predictions, a quarter of a minute apart. Variations of biases
+/// that are far too small leave no slope, so that it is also started from large ones.
+/// Ways are of one vehicle. Deterministic.
+Learned learn(const std::vector<RecordedWay>& ways, const NoiseModel& told,
+              const LearnOptions& options);
+
+}  // namespace foucault::calibration

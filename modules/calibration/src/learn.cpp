@@ -1,0 +1,257 @@
+#include "foucault/calibration/learn.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+namespace foucault::calibration {
+namespace {
+
+constexpr double kIndependent = 15;  // [s], from one prediction to another
+
+/// The function that is climbed, over the logarithms of the factors of what was told.
+class Landscape {
+ public:
+  Landscape(const std::vector<RecordedWay>& ways, const NoiseModel& told,
+            const LearnOptions& options, int starts)
+      : ways_(ways),
+        options_(options),
+        told_(told),
+        prior_(1 / std::pow(std::log(options.told_within), 2)) {
+    constexpr double kClosest = 5, kFarthest = 60;  // [s]
+    double length = 0;
+    for (const RecordedWay& way : ways) length += length_s(way);
+    horizons_ = {options.horizons_s, std::clamp(length / starts, kClosest, kFarthest)};
+    for (const Prediction& p : predict(origin())) weights_[p.horizon_s] += 1;
+    for (auto& [horizon, weight] : weights_) weight = length / kIndependent / weight;
+  }
+
+  Eigen::Index size() const { return static_cast<Eigen::Index>(options_.axes.size()); }
+  Eigen::VectorXd origin() const { return Eigen::VectorXd::Zero(size()); }
+  int passes() const { return passes_; }
+
+  NoiseModel at(const Eigen::VectorXd& x) const {
+    NoiseModel model = told_;
+    for (Eigen::Index i = 0; i < size(); ++i)
+      options_.axes[static_cast<std::size_t>(i)].of(model) *= std::exp(x[i]);
+    return model;
+  }
+
+  std::vector<Prediction> predict(const Eigen::VectorXd& x) {
+    ++passes_;
+    std::vector<Prediction> all;
+    for (const RecordedWay& way : ways_) {
+      const std::vector<Prediction> of_way = predictions(way, at(x), horizons_);
+      all.insert(all.end(), of_way.begin(), of_way.end());
+    }
+    return all;
+  }
+
+  double height(const std::vector<Prediction>& all, const Eigen::VectorXd& x) const {
+    double sum = -0.5 * prior_ * x.squaredNorm();
+    for (const Prediction& p : all) sum += weights_.at(p.horizon_s) * log_density(p);
+    return std::isfinite(sum) ? sum : -std::numeric_limits<double>::infinity();
+  }
+
+  struct Slope {
+    Eigen::VectorXd gradient;
+    Eigen::MatrixXd information;
+  };
+  Slope slope(const std::vector<Prediction>& here, const Eigen::VectorXd& x) {
+    constexpr double kStep = 0.02;
+    std::vector<std::vector<Prediction>> moved;
+    for (Eigen::Index i = 0; i < size(); ++i) {
+      Eigen::VectorXd next = x;
+      next[i] += kStep;
+      moved.push_back(predict(next));
+    }
+    Slope slope{-prior_ * x, prior_ * Eigen::MatrixXd::Identity(size(), size())};
+    std::vector<Derivative> by(moved.size());
+    for (std::size_t k = 0; k < here.size(); ++k) {
+      for (std::size_t i = 0; i < by.size(); ++i)
+        by[i] = {(moved[i][k].error - here[k].error) / kStep,
+                 (moved[i][k].covariance - here[k].covariance) / kStep};
+      add(here[k], by, slope);
+    }
+    return slope;
+  }
+
+ private:
+  struct Derivative {
+    Eigen::Vector3d error;
+    Eigen::Matrix3d covariance;
+  };
+
+  /// Of N(error; 0, S): d = -e' W de + (e' W dS W e - tr W dS) / 2, W = S^-1, and
+  /// information de' W de + tr(W dS W dS) / 2.
+  void add(const Prediction& p, const std::vector<Derivative>& by, Slope& slope) const {
+    const double weight = weights_.at(p.horizon_s);
+    const Eigen::Matrix3d W = p.covariance.inverse();
+    const Eigen::Vector3d We = W * p.error;
+    for (std::size_t i = 0; i < by.size(); ++i) {
+      const auto row = static_cast<Eigen::Index>(i);
+      const Eigen::Matrix3d WdS = W * by[i].covariance;
+      slope.gradient[row] +=
+          weight * (-We.dot(by[i].error) + 0.5 * (p.error.dot(WdS * We) - WdS.trace()));
+      for (std::size_t j = 0; j <= i; ++j) {
+        const auto column = static_cast<Eigen::Index>(j);
+        const double both =
+            weight * (by[i].error.dot(W * by[j].error) +
+                      0.5 * WdS.cwiseProduct((W * by[j].covariance).transpose()).sum());
+        slope.information(row, column) += both;
+        if (i != j) slope.information(column, row) += both;
+      }
+    }
+  }
+
+  const std::vector<RecordedWay>& ways_;
+  const LearnOptions& options_;
+  NoiseModel told_;
+  double prior_;
+  Horizons horizons_;
+  std::map<double, double> weights_;  ///< by horizon
+  int passes_ = 0;
+};
+
+struct Place {
+  Eigen::VectorXd x;
+  std::vector<Prediction> predictions;
+  double height = -std::numeric_limits<double>::infinity();
+  Eigen::MatrixXd information;
+};
+
+Place place_at(Landscape& landscape, const Eigen::VectorXd& x) {
+  Place place{x, landscape.predict(x), 0, {}};
+  place.height = landscape.height(place.predictions, x);
+  return place;
+}
+
+/// The first higher place along steps that are damped more and more; none if there is none.
+std::optional<Place> higher(Landscape& landscape, const Place& from, const Landscape::Slope& slope,
+                            double& damping) {
+  constexpr int kAttempts = 6;
+  constexpr double kLongest = 1.5;  // a factor of 4.5
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    Eigen::MatrixXd damped = slope.information;
+    damped.diagonal() *= 1 + damping;
+    Eigen::VectorXd step = damped.ldlt().solve(slope.gradient);
+    step *= std::min(1.0, kLongest / step.cwiseAbs().maxCoeff());
+    Place next = place_at(landscape, from.x + step);
+    if (next.height > from.height) {
+      damping *= 0.3;
+      return next;
+    }
+    damping = std::max(4 * damping, 0.3);
+  }
+  return std::nullopt;
+}
+
+Place climbed(Landscape& landscape, const Eigen::VectorXd& start) {
+  constexpr int kMostRounds = 20;
+  constexpr double kLittle = 0.1;  // of a logarithm of a likelihood
+  Place place = place_at(landscape, start);
+  double damping = 0;
+  for (int round = 0; round < kMostRounds; ++round) {
+    const Landscape::Slope slope = landscape.slope(place.predictions, place.x);
+    place.information = slope.information;
+    std::optional<Place> next = higher(landscape, place, slope, damping);
+    if (!next) break;
+    next->information = place.information;
+    const bool arrived = next->height - place.height < kLittle;
+    place = std::move(*next);
+    if (arrived) break;
+  }
+  return place;
+}
+
+/// By the recording: half of what is known of a logarithm.
+bool is_told(double variance, const LearnOptions& options) {
+  return variance < 0.5 * std::pow(std::log(options.told_within), 2);
+}
+
+bool is_variation(const NoiseAxis& axis) {
+  return axis.name == noise_axis::accel_bias.name || axis.name == noise_axis::gyro_bias.name;
+}
+
+/// Whether the recording tells how large the variations of the biases are.
+bool knows_variations(const Place& place, const LearnOptions& options) {
+  const Eigen::MatrixXd covariance = place.information.inverse();
+  for (std::size_t i = 0; i < options.axes.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    if (is_variation(options.axes[i]) && !is_told(covariance(row, row), options)) return false;
+  }
+  return true;
+}
+
+/// From variations of biases that are thirty times what was told; if they do not show there, from
+/// others.
+Place highest(Landscape& landscape, const LearnOptions& options) {
+  const std::vector<NoiseAxis>& axes = options.axes;
+  Place best;
+  for (const double factor : {30.0, 300.0, 1.0}) {
+    Eigen::VectorXd start = landscape.origin();
+    for (std::size_t i = 0; i < axes.size(); ++i)
+      if (is_variation(axes[i])) start[static_cast<Eigen::Index>(i)] = std::log(factor);
+    Place place = climbed(landscape, start);
+    if (place.height > best.height) best = std::move(place);
+    if (knows_variations(best, options)) break;
+  }
+  return best;
+}
+
+std::vector<LearnedAxis> learned_axes(const LearnOptions& options, const NoiseModel& told,
+                                      const NoiseModel& found, const Eigen::MatrixXd& covariance) {
+  std::vector<LearnedAxis> out;
+  for (std::size_t i = 0; i < options.axes.size(); ++i) {
+    const NoiseAxis& axis = options.axes[i];
+    const auto row = static_cast<Eigen::Index>(i);
+    const double sigma = std::sqrt(covariance(row, row));
+    out.push_back(
+        {axis, axis.value(told), axis.value(found), sigma, is_told(sigma * sigma, options)});
+  }
+  return out;
+}
+
+}  // namespace
+
+std::vector<NoiseAxis> NoiseAxes::all() const {
+  std::vector<NoiseAxis> out = told;
+  out.insert(out.end(), of_aids.begin(), of_aids.end());
+  return out;
+}
+
+NoiseAxes axes_of(const std::vector<RecordedWay>& ways) {
+  namespace axis = noise_axis;
+  std::map<NoiseOf, int> measured;
+  for (const RecordedWay& way : ways)
+    for (const WayNode& node : way)
+      for (const WayMeasurement& z : node.measured) ++measured[z.kind];
+  NoiseAxes axes;
+  axes.told = {axis::accel_white, axis::gyro_white, axis::accel_bias, axis::gyro_bias};
+  if (measured[NoiseOf::position] > 0) axes.told.push_back(axis::fix_white);
+  if (measured[NoiseOf::velocity] > 0) axes.told.push_back(axis::velocity);
+  if (measured[NoiseOf::slip] > 0) axes.of_aids = {axis::slip, axis::bounce};
+  if (measured[NoiseOf::wheel] > 0) axes.of_aids.push_back(axis::wheel);
+  return axes;
+}
+
+Learned learn(const std::vector<RecordedWay>& ways, const NoiseModel& told,
+              const LearnOptions& options) {
+  if (options.axes.empty()) return {told, {}, 0, 0, {}, {}};
+  Landscape coarse(ways, told, options, options.starts / 4);
+  Landscape landscape(ways, told, options, options.starts);
+  const Place before = place_at(landscape, landscape.origin());
+  const Place best = climbed(landscape, highest(coarse, options).x);
+  Learned out;
+  out.noise = landscape.at(best.x);
+  out.axes = learned_axes(options, told, out.noise, best.information.inverse());
+  out.gain = best.height - before.height;
+  out.passes = coarse.passes() + landscape.passes();
+  out.before = normalized_errors(before.predictions);
+  out.after = normalized_errors(best.predictions);
+  return out;
+}
+
+}  // namespace foucault::calibration
