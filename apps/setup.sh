@@ -6,7 +6,7 @@ set -euo pipefail
 
 build_packages=(
   g++ cmake ninja-build
-  libmrpt-obs-dev libmrpt-topography-dev
+  libeigen3-dev libmrpt-obs-dev
   libceres-dev
   libopencv-dev libopencv-contrib-dev # contrib: freetype, for text in the figures
   libcli11-dev nlohmann-json3-dev libfmt-dev libyaml-cpp-dev zlib1g-dev

@@ -93,6 +93,19 @@ TEST_F(Trip, InfoTellsWhatIsInIt) {
   EXPECT_TRUE(imu_seen);
 }
 
+TEST_F(Trip, CheckJudgesInWordsAsJsonAndByItsExitCode) {
+  const Outcome text = foucault({"check", log_});
+  EXPECT_EQ(text.exit_code, 0) << text.err;
+  EXPECT_THAT(text.out, HasSubstr("lever arm"));
+  const json judged = json::parse(foucault({"check", "--json", "-i", log_}).out);
+  EXPECT_TRUE(judged["ok"].get<bool>());
+  ASSERT_GT(judged["findings"].size(), 5u);
+  for (const json& finding : judged["findings"]) {
+    EXPECT_THAT(text.out, HasSubstr(finding["text"].get<std::string>()));
+  }
+  EXPECT_EQ(foucault({"check", "-q", log_}).out, "");
+}
+
 TEST_F(Trip, ProfileTellsWhereTheTimeWent) {
   const Outcome run =
       foucault({"run", log_, "--method", "ekf", "--profile", "--out", folder_ / "profiled"});

@@ -13,6 +13,22 @@
 
 namespace foucault::app {
 
+CLI::Option* add_input_option(CLI::App& app, const std::string& name, std::string& path,
+                              const std::string& help) {
+  return app.add_option("-i,--input," + name, path, help);
+}
+
+CLI::Option* add_input_option(CLI::App& app, const std::string& name,
+                              std::vector<std::string>& paths, const std::string& help) {
+  return app.add_option("-i,--input," + name, paths, help);
+}
+
+CLI::Option* add_output_option(CLI::App& app, std::string& path, const std::string& help) {
+  CLI::Option* option = app.add_option("-o,--out", path, help);
+  app.add_flag("-w,--overwrite", "Write over what is there, which only a mapping waits for");
+  return option;
+}
+
 void add_help_text(CLI::App& app, const std::string& flag, const std::string& description,
                    std::function<std::string()> text) {
   app.add_flag_callback(

@@ -9,12 +9,23 @@
 
 namespace CLI {
 class App;
-}
+class Option;
+}  // namespace CLI
 
 /// Options that several subcommands have.
 namespace foucault::app {
 
 struct StoreArguments;
+
+/// What is read: by its place, or by -i, --input. `name` stands for it in the help.
+CLI::Option* add_input_option(CLI::App& app, const std::string& name, std::string& path,
+                              const std::string& help);
+CLI::Option* add_input_option(CLI::App& app, const std::string& name,
+                              std::vector<std::string>& paths, const std::string& help);
+
+/// Adds -o, --out, and the flag -w, --overwrite that programs of MRPT want before they write over
+/// what is there. This one does so without, except over what was corrected by hand.
+CLI::Option* add_output_option(CLI::App& app, std::string& path, const std::string& help);
 
 /// --config and --set of a subcommand.
 struct ConfigArguments {

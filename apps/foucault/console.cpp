@@ -35,11 +35,13 @@ Console::Console(bool quiet)
 
 Console::~Console() { clear_progress(); }
 
-void Console::say(const std::string& line) {
+void Console::say(const std::string& line) { print(line + "\n"); }
+
+void Console::print(const std::string& text) {
   if (quiet_) return;
   clear_progress();
   // Results matter more than words about them: main() looks whether these came out.
-  std::fputs((line + "\n").c_str(), stdout);
+  std::fputs(text.c_str(), stdout);
   std::fflush(stdout);
 }
 

@@ -21,6 +21,9 @@ class Console {
   void say(const std::string& line);
   void say(const std::vector<std::string>& lines);
 
+  /// A text of whole lines.
+  void print(const std::string& text);
+
   /// `foucault: warning: <text>`, once for each text.
   void warn(const std::string& text);
 

@@ -14,28 +14,16 @@
 #include "foucault/rawlog/rawlog_source.h"
 #include "jobs/survey.h"
 #include "settings.h"
+#include "texts/check_text.h"
 
 namespace foucault::app {
 namespace {
 
-const char* name_of(diagnosis::Severity severity) {
-  switch (severity) {
-    case diagnosis::Severity::ok:
-      return "ok";
-    case diagnosis::Severity::warning:
-      return "warning";
-    case diagnosis::Severity::error:
-      return "error";
-  }
-  return "";
-}
-
-void print(const std::vector<diagnosis::Finding>& findings) {
-  for (const diagnosis::Finding& finding : findings) {
-    fmt::print("{:<8} {:<20} {}\n", name_of(finding.severity), finding.subject, finding.text);
-    if (!finding.remedy.empty()) fmt::print("{:<8} {:<20} -> {}\n", "", "", finding.remedy);
-  }
-}
+struct CheckOptions {
+  std::string log;
+  ConfigArguments config;
+  bool json = false;
+};
 
 constexpr const char* kOffsetSubject = "time offset";  // of diagnosis
 
@@ -86,43 +74,45 @@ std::vector<diagnosis::Finding> with_estimates(std::vector<diagnosis::Finding> f
   return findings;
 }
 
-/// The log is looked through by an estimator first, with whose clocks and noise it is judged.
-void check(const std::string& log, const Settings& told, Console& console) {
-  Surveyor surveyor(console);
-  const Settings settings = surveyor.complete(log, told);
-  rawlog::RawlogSource source(log, settings.imu.sample_kind(), settings.rawlog);
+/// The log is looked through by an estimator first, with whose clocks and noise it is judged. Also
+/// what the reader noticed.
+std::vector<diagnosis::Finding> findings_of(const std::string& log, rawlog::RawlogSource& source,
+                                            const Settings& settings, const Surveyor& surveyor,
+                                            Console& console) {
   diagnosis::Examination examination(settings.imu.noise(), source.mounting(), settings.gnss);
   while (const std::optional<Measurement> measurement = source.next()) {
     examination.add(*measurement);
     console.progress("checking", source.progress());
   }
   console.clear_progress();
-  const std::vector<diagnosis::Finding> findings =
+  std::vector<diagnosis::Finding> findings =
       with_estimates(examination.findings(), surveyor.found(log));
-  print(findings);
   for (const state::Notice& notice : source.notices()) {
-    fmt::print("{:<8} {:<20} {}\n", "warning", "log", notice.text);
+    findings.push_back({diagnosis::Severity::warning, "log", notice.text, ""});
   }
+  return findings;
+}
+
+void check(const CheckOptions& options, const Settings& told, Console& console) {
+  Surveyor surveyor(console);
+  const Settings settings = surveyor.complete(options.log, told);
+  rawlog::RawlogSource source(options.log, settings.imu.sample_kind(), settings.rawlog);
+  const std::vector<diagnosis::Finding> findings =
+      findings_of(options.log, source, settings, surveyor, console);
+  console.print(options.json ? findings_json(options.log, findings) : findings_text(findings));
   if (source.damage()) throw DataError(*source.damage());
-  const auto errors =
-      std::count_if(findings.begin(), findings.end(), [](const diagnosis::Finding& finding) {
-        return finding.severity == diagnosis::Severity::error;
-      });
-  if (errors > 0) {
-    throw DataError(
-        fmt::format("'{}': {} of the findings above must be mended first", log, errors));
-  }
+  const std::vector<std::string> subjects = subjects_to_mend(findings);
+  if (subjects.empty()) return;
+  throw DataError(fmt::format("'{}': {} of the findings must be mended first: {}", options.log,
+                              subjects.size(), fmt::join(subjects, ", ")));
 }
 
 }  // namespace
 
 std::function<void(Call&)> declare_check(CLI::App& app) {
-  struct Options {
-    std::string log;
-    ConfigArguments config;
-  };
-  const auto options = std::make_shared<Options>();
-  app.add_option("LOG", options->log, "Rawlog to judge")->required();
+  const auto options = std::make_shared<CheckOptions>();
+  add_input_option(app, "LOG", options->log, "Rawlog to judge")->required();
+  app.add_flag("--json", options->json, "Print JSON for other programs");
   add_config_options(app, options->config, settings_help);
   app.footer(
       "\nWhat is looked at: rates and holes, overlap, the date, where a reference lies, sigmas of\n"
@@ -130,11 +120,16 @@ std::function<void(Call&)> declare_check(CLI::App& app) {
       "what\n"
       "is lost by rotations between its samples. Clocks, lever arm, mounting, scale factors and\n"
       "noise are what `run` would find in the log, each with its sigma.\n"
-      "Exit code 1 if something must be mended before the log is processed.");
+      "Exit code 1 if something must be mended before the log is processed; with -q that is all.\n"
+      "\nExamples:\n"
+      "  foucault check trip.rawlog\n"
+      "  foucault check trip.rawlog --set imu.preset=ICM20602\n"
+      "  foucault check trip.rawlog --json | jq '.findings[] | select(.severity != \"ok\")'\n"
+      "  foucault check -q trip.rawlog && foucault run trip.rawlog --out trip");
   return [options](Call& call) {
     Settings settings;
     apply(options->config, settings);
-    check(options->log, settings_for(options->log, settings), call.console);
+    check(*options, settings_for(options->log, settings), call.console);
   };
 }
 

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
+#include "arguments.h"
 #include "jobs/compare_job.h"
 #include "output_directory.h"
 
@@ -14,11 +15,11 @@ std::function<void(Call&)> declare_compare(CLI::App& app) {
     std::string out;
   };
   const auto o = std::make_shared<Options>();
-  app.add_option("DIR", o->folders,
-                 "Folders that 'foucault run' wrote; differences are from the "
-                 "first")
+  add_input_option(app, "DIR", o->folders,
+                   "Folders that 'foucault run' wrote; differences are from the "
+                   "first")
       ->required();
-  app.add_option("--out", o->out, "Folder for report/")->required();
+  add_output_option(app, o->out, "Folder for report/")->required();
   app.footer("\nExample:\n  foucault compare trip-ekf trip-batch --out both");
   return [o](Call& call) {
     compare(o->folders, o->out, call.console);

@@ -91,13 +91,16 @@ std::function<void(Call&)> declare_demo(CLI::App& app) {
   const auto o = std::make_shared<DemoOptions>();
   app.add_flag("--full", o->full, "The paper's three trips, 2325, 1617 and 2333 s, instead of one");
   add_jobs_option(app, o->jobs);
-  app.add_option("--out", o->out, "Folder for recordings, solution, tables and reports")
+  add_output_option(app, o->out, "Folder for recordings, solution, tables and reports")
       ->capture_default_str();
   app.footer(
       "\nSimulates a car with the four IMUs of the paper, processes one trip from recording to\n"
       "report (DIR/trip), then withholds GNSS for 60 s every 150 s and compares the drift of ekf,\n"
       "refined and rough: Tables III and IV, with the noise that was simulated (DIR/report) and\n"
-      "with noise tuned for each method (DIR/tuned/report).");
+      "with noise tuned for each method (DIR/tuned/report).\n"
+      "\nExamples:\n"
+      "  foucault demo\n"
+      "  foucault demo --full --jobs 4 --out paper");
   return [o](Call& call) {
     RunStore store({}, o->out, o->jobs);
     store.keep_if_stopped(call.console, [&] { run_demo(*o, store, call); });

@@ -93,7 +93,7 @@ void evaluate_logs(const EvaluateOptions& options, Call& call) {
 
 std::function<void(Call&)> declare_evaluate(CLI::App& app) {
   const auto o = std::make_shared<EvaluateOptions>();
-  app.add_option("LOG", o->logs, "Rawlogs")->required();
+  add_input_option(app, "LOG", o->logs, "Rawlogs")->required();
   app.add_flag("--paper", o->paper,
                "The paper's comparison: ekf, refined and rough with 15 states and position fixes "
                "alone (aids.mode and calibrate.mode none)");
@@ -108,7 +108,7 @@ std::function<void(Call&)> declare_evaluate(CLI::App& app) {
       "each is worth");
   add_config_options(app, o->config, settings_help);
   add_jobs_option(app, o->jobs);
-  app.add_option("--out", o->out, "Folder for drift.csv, metrics.json, tables/, report/")
+  add_output_option(app, o->out, "Folder for drift.csv, metrics.json, tables/, report/")
       ->required();
   add_no_report_flag(app, o->no_report);
   add_store_options(app, o->store);

@@ -29,19 +29,9 @@ constexpr const char* kExamples =
     "  foucault import auto drive.bag --lever-arm 0.3,0,-0.5 --out drive.rawlog\n"
     "  foucault import csv --guess imu.csv gnss.csv --out drive.yaml\n"
     "  foucault import csv --mapping drive.yaml --out drive.rawlog\n"
-    "  foucault import rtklib --gnss drive.pos --imu imu.csv --mapping drive.yaml --out "
-    "drive.rawlog\n"
-    "  foucault import rinex --rover rover.obs --base base.obs --nav day.nav --imu imu.csv \\\n"
-    "      --mapping drive.yaml --out drive.rawlog\n"
-    "  foucault import nmea --gnss drive.nmea --imu imu.csv --mapping drive.yaml --out "
-    "drive.rawlog\n"
-    "  foucault import ubx drive.ubx --lever-arm 0.3,0,-0.5 --out drive.rawlog\n"
-    "  foucault import novatel drive.gps --lever-arm 0.3,0,-0.5 --out drive.rawlog\n"
-    "  foucault import ulog flight.ulg --lever-arm 0.1,0,-0.2 --out flight.rawlog\n"
     "  foucault import i2nav --imu ADIS16465.txt --gnss GNSS_RTK.pos --reference truth.nav \\\n"
     "      --gps-week 2017 --lever-arm -0.073,0.302,0.087 --out trip.rawlog\n"
-    "  foucault import i2nav --imu imu.txt --gnss rtk.pos --wheel wheel.csv --gps-week 2200 \\\n"
-    "      --lever-arm 0.1,-0.3,-0.8 --out drive.rawlog";
+    "\n'foucault help import FORMAT' tells the options of a format.";
 
 }  // namespace
 

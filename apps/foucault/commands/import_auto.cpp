@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 
+#include "arguments.h"
 #include "foucault/core/error.h"
 #include "foucault/rawlog/recognize.h"
 #include "import_formats.h"
@@ -118,11 +119,15 @@ void import_recognized(const AutoOptions& options, Call& call) {
 
 std::function<void(Call&)> declare_import_auto(CLI::App& app) {
   const auto o = std::make_shared<AutoOptions>();
-  app.add_option("FILE", o->files, "Recordings, plain or gzip")->required();
-  app.add_option("--out", o->out, "Rawlog to write")->required();
+  add_input_option(app, "FILE", o->files, "Recordings, plain or gzip")->required();
+  add_output_option(app, o->out, "Rawlog to write")->required();
   app.add_option("--lever-arm", o->lever_arm, kLeverArmHelp);
   app.add_flag("--skip-bad-rows", o->skip_bad_rows,
                "Leave out rows that are wrong, and count them, instead of stopping");
+  app.footer(
+      "\nExamples:\n"
+      "  foucault import auto drive.ubx --out drive.rawlog\n"
+      "  foucault import auto drive.bag --lever-arm 0.3,0,-0.5 --out drive.rawlog");
   return [o](Call& call) { import_recognized(*o, call); };
 }
 

@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "arguments.h"
 #include "foucault/core/fix_quality.h"
 #include "foucault/core/time.h"
 #include "texts/rawlog_summary.h"
@@ -57,7 +58,7 @@ void report_import(Console& console, const rawlog::ImportSummary& summary, const
 }
 
 void add_import_options(CLI::App& app, rawlog::ImportOptions& options) {
-  app.add_option("--out", options.out, "Rawlog to write")->required();
+  add_output_option(app, options.out, "Rawlog to write")->required();
   app.add_flag("--skip-bad-rows", options.skip_bad_rows,
                "Leave out rows that are wrong, and count them, instead of stopping");
 }

@@ -17,7 +17,8 @@ std::function<void(Call&)> declare_import_novatel(CLI::App& app) {
     std::vector<double> imu_scales;
   };
   const auto o = std::make_shared<Options>();
-  app.add_option("log", o->import.log, "Recording of a NovAtel receiver, ASCII or binary, or .gz")
+  add_input_option(app, "log", o->import.log,
+                   "Recording of a NovAtel receiver, ASCII or binary, or .gz")
       ->required();
   app.add_option("--lever-arm", o->lever_arm,
                  std::string(kLeverArmHelp) + "; without it ANT1 of INSCONFIG");
@@ -33,6 +34,11 @@ std::function<void(Call&)> declare_import_novatel(CLI::App& app) {
       ->delimiter(',');
   app.add_option("--velocity-sigma", o->velocity_sigma, "North, east, down [m/s]: X,Y,Z");
   add_import_options(app, o->import);
+  app.footer(
+      "\nExamples:\n"
+      "  foucault import novatel drive.gps --out drive.rawlog\n"
+      "  foucault import novatel drive.gps --imu-type ADIS16488 --lever-arm 0.3,0,-0.5 "
+      "--out drive.rawlog");
   return [o](Call& call) {
     rawlog::NovatelImport& import = o->import;
     if (o->lever_arm) import.lever_arm = parse_vector3("--lever-arm", *o->lever_arm);

@@ -55,6 +55,11 @@ std::function<void(Call&)> declare_import_rinex(CLI::App& app) {
   const auto o = std::make_shared<Options>();
   app.add_option("--rover", o->import.rover, "RINEX observations (2 or 3; .gz too)")->required();
   add_raw_gnss_options(app, o->import, o->texts);
+  app.footer(
+      "\nExamples:\n"
+      "  foucault import rinex --rover rover.obs --nav day.nav --out fixes.rawlog\n"
+      "  foucault import rinex --rover rover.obs --base base.obs --nav day.nav --imu imu.csv \\\n"
+      "      --mapping drive.yaml --out drive.rawlog");
   return [o](Call& call) {
     finish_options(call, o->texts, o->import);
     report_import(call.console, rawlog::import_rinex(o->import), o->import.out);
@@ -67,12 +72,18 @@ std::function<void(Call&)> declare_import_ubx(CLI::App& app) {
     RawGnssTexts texts;
   };
   const auto o = std::make_shared<Options>();
-  app.add_option("log", o->import.rover, "UBX of a u-blox receiver (.ubx, or .gz)")->required();
+  add_input_option(app, "log", o->import.rover, "UBX of a u-blox receiver (.ubx, or .gz)")
+      ->required();
   app.add_option(
          "--imu-axes", o->import.imu_axes,
          "Axes of the receiver's own IMU that look forward, right, down; without it x,-y,-z")
       ->delimiter(',');
   add_raw_gnss_options(app, o->import, o->texts);
+  app.footer(
+      "\nExamples:\n"
+      "  foucault import ubx drive.ubx --lever-arm 0.3,0,-0.5 --out drive.rawlog\n"
+      "  foucault import ubx drive.ubx --base base.obs --nav day.nav --lever-arm 0.3,0,-0.5 \\\n"
+      "      --out drive.rawlog");
   return [o](Call& call) {
     finish_options(call, o->texts, o->import);
     report_import(call.console, rawlog::import_ubx(o->import), o->import.out);

@@ -55,14 +55,15 @@ std::function<void(Call&)> declare_mapped(CLI::App& app,
   };
 }
 
-/// Writes a new file, or to the terminal. What somebody corrected by hand is not written over.
-void write_mapping(Console& console, const std::string& text, const std::string& out) {
+/// Writes a file, or to the terminal. What somebody corrected by hand is not written over unasked.
+void write_mapping(Console& console, const std::string& text, const std::string& out,
+                   bool overwrite) {
   if (out.empty()) {
     std::cout << text;
     return;
   }
-  if (std::filesystem::exists(out)) {
-    throw UsageError("'" + out + "' is there already; name another file, or remove it");
+  if (!overwrite && std::filesystem::exists(out)) {
+    throw UsageError("'" + out + "' is there already; name another file, or write over it by -w");
   }
   std::ofstream file(out, std::ios::binary);
   if (!(file << text << std::flush)) {
@@ -72,9 +73,10 @@ void write_mapping(Console& console, const std::string& text, const std::string&
 }
 
 void guess_and_write(Console& console, const std::vector<std::string>& files,
-                     const std::string& out) {
+                     const std::string& out, bool overwrite) {
   const std::string folder = std::filesystem::path(out).parent_path().string();
-  write_mapping(console, rawlog::mapping_text(rawlog::guess_mapping(files, folder)), out);
+  write_mapping(console, rawlog::mapping_text(rawlog::guess_mapping(files, folder)), out,
+                overwrite);
 }
 
 }  // namespace
@@ -100,6 +102,12 @@ std::function<void(Call&)> declare_import_i2nav(CLI::App& app) {
                  "GPS week of the first row; without it the reference's");
   app.add_option("--lever-arm", o->lever_arm, kLeverArmHelp)->required();
   add_import_options(app, o->import);
+  app.footer(
+      "\nExamples:\n"
+      "  foucault import i2nav --imu ADIS16465.txt --gnss GNSS_RTK.pos --reference truth.nav \\\n"
+      "      --gps-week 2017 --lever-arm -0.073,0.302,0.087 --out trip.rawlog\n"
+      "  foucault import i2nav --imu imu.txt --gnss rtk.pos --wheel wheel.csv --gps-week 2200 \\\n"
+      "      --lever-arm 0.1,-0.3,-0.8 --out drive.rawlog");
   return [o](Call& call) {
     o->import.lever_arm = parse_vector3("--lever-arm", o->lever_arm);
     o->import.progress = call.console.progress_of("importing");
@@ -108,6 +116,10 @@ std::function<void(Call&)> declare_import_i2nav(CLI::App& app) {
 }
 
 std::function<void(Call&)> declare_import_rtklib(CLI::App& app) {
+  app.footer(
+      "\nExamples:\n"
+      "  foucault import rtklib --gnss drive.pos --imu imu.csv --mapping drive.yaml \\\n"
+      "      --out drive.rawlog");
   return declare_mapped<rawlog::RtklibImport>(app, rawlog::import_rtklib,
                                               "RTKLIB's .pos, instead of the mapping's");
 }
@@ -120,9 +132,17 @@ std::function<void(Call&)> declare_import_csv(CLI::App& app) {
                  "Instead of an import: write a mapping of these tables to start from, to --out "
                  "(.yaml) or to the terminal");
   app.get_option("--out")->required(false);
+  app.footer(
+      "\nExamples:\n"
+      "  foucault import csv --guess imu.csv gnss.csv --out drive.yaml\n"
+      "  foucault import csv --mapping drive.yaml --out drive.rawlog\n"
+      "  foucault import csv --mapping drive.yaml --data day2 --lever-arm 0.3,0,-0.5 "
+      "--out day2.rawlog");
   return [&app, import, files](Call& call) {
     const std::string out = app.get_option("--out")->as<std::string>();
-    if (!files->empty()) return guess_and_write(call.console, *files, out);
+    if (!files->empty()) {
+      return guess_and_write(call.console, *files, out, app.count("--overwrite") > 0);
+    }
     if (app.get_option("--mapping")->empty()) {
       throw UsageError("--mapping is required; --guess FILE... writes one to start from");
     }
@@ -132,6 +152,11 @@ std::function<void(Call&)> declare_import_csv(CLI::App& app) {
 }
 
 std::function<void(Call&)> declare_import_nmea(CLI::App& app) {
+  app.footer(
+      "\nExamples:\n"
+      "  foucault import nmea --gnss drive.nmea --imu imu.csv --mapping drive.yaml "
+      "--out drive.rawlog\n"
+      "  foucault import nmea --gnss drive.nmea --out fixes.rawlog");
   return declare_mapped<rawlog::NmeaImport>(app, rawlog::import_nmea,
                                             "NMEA sentences, instead of the mapping's", false);
 }

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
+#include "arguments.h"
 #include "command.h"
 #include "foucault/core/error.h"
 #include "foucault/rawlog/rawlog_info.h"
@@ -16,8 +17,12 @@ std::function<void(Call&)> declare_info(CLI::App& app) {
     bool json = false;
   };
   const auto options = std::make_shared<Options>();
-  app.add_option("LOG", options->log, "Rawlog, plain or compressed")->required();
+  add_input_option(app, "LOG", options->log, "Rawlog, plain or compressed")->required();
   app.add_flag("--json", options->json, "Print JSON for other programs");
+  app.footer(
+      "\nExamples:\n"
+      "  foucault info trip.rawlog\n"
+      "  foucault info trip.rawlog --json | jq .imu");
   return [options](Call& call) {
     const rawlog::RawlogInfo info =
         rawlog::read_rawlog_info(options->log, call.console.progress_of("reading"));

@@ -11,7 +11,9 @@ std::function<void(Call&)> declare_lab(CLI::App& app) {
   app.footer(
       "\nExamples:\n"
       "  foucault lab preintegration --out lab\n"
-      "  foucault lab preintegration --motion vibration,airliner --out lab");
+      "  foucault lab faults --fault ramp --out faults\n"
+      "  foucault lab returns trip.rawlog --out returns\n"
+      "  foucault lab starts --count 50 --out starts");
   return [studies](Call& call) {
     for (const Study& study : studies) {
       if (study.command->parsed()) return study.run(call);

@@ -87,10 +87,13 @@ Study declare_fault_study(CLI::App& lab) {
       ->delimiter(',')
       ->capture_default_str();
   add_jobs_option(*faults, o->jobs);
-  faults
-      ->add_option("--out", o->out,
-                   "Folder for faults.csv, a row a run, and faults.md, a row a fault")
+  add_output_option(*faults, o->out,
+                    "Folder for faults.csv, a row a run, and faults.md, a row a fault")
       ->capture_default_str();
+  faults->footer(
+      "\nExamples:\n"
+      "  foucault lab faults --out faults\n"
+      "  foucault lab faults --fault ramp,spikes --methods ekf --seeds 1,2,3 --out faults");
   return {faults, [o](Call& call) { study_faults(*o, call); }};
 }
 

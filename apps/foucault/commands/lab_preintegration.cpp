@@ -76,9 +76,13 @@ Study declare_preintegration_study(CLI::App& lab) {
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
       ->capture_default_str();
   add_jobs_option(*app, o->jobs, "Intervals");
-  app->add_option("--out", o->out, "Folder for preintegration.csv, metrics.json, report/")
+  add_output_option(*app, o->out, "Folder for preintegration.csv, metrics.json, report/")
       ->capture_default_str();
   add_no_report_flag(*app, o->no_report);
+  app->footer(
+      "\nExamples:\n"
+      "  foucault lab preintegration --out lab\n"
+      "  foucault lab preintegration --motion vibration,airliner --out lab");
   return {app, [o](Call& call) { study_preintegration(*o, call); }};
 }
 

@@ -86,9 +86,9 @@ Study declare_return_study(CLI::App& lab) {
       "Whether true fixes are believed after outages, whatever the noise model: against no gate");
   returns->fallthrough();
   for (const Method& method : methods()) o->methods.push_back(method.name);
-  returns->add_option("LOG", o->logs,
-                      "Rawlogs, with the outages of the configuration; default: a "
-                      "simulated trip");
+  add_input_option(*returns, "LOG", o->logs,
+                   "Rawlogs, with the outages of the configuration; default: a "
+                   "simulated trip");
   add_config_options(*returns, o->config, settings_help);
   returns->add_option("--methods", o->methods, "Separated by commas")
       ->delimiter(',')
@@ -106,8 +106,12 @@ Study declare_return_study(CLI::App& lab) {
       ->delimiter(',')
       ->check(CLI::PositiveNumber);
   add_jobs_option(*returns, o->jobs);
-  returns->add_option("--out", o->out, "Folder for returns.csv, a row a run, and returns.md")
+  add_output_option(*returns, o->out, "Folder for returns.csv, a row a run, and returns.md")
       ->capture_default_str();
+  returns->footer(
+      "\nExamples:\n"
+      "  foucault lab returns --out returns\n"
+      "  foucault lab returns trip.rawlog --lengths 20 --methods ekf,rts --out returns");
   return {returns, [o](Call& call) { study_returns(*o, call); }};
 }
 

@@ -58,8 +58,12 @@ Study declare_start_study(CLI::App& lab) {
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   add_jobs_option(*starts, o->jobs);
-  starts->add_option("--out", o->out, "Folder for starts.csv, a row a start, and starts.md")
+  add_output_option(*starts, o->out, "Folder for starts.csv, a row a start, and starts.md")
       ->capture_default_str();
+  starts->footer(
+      "\nExamples:\n"
+      "  foucault lab starts --count 50 --out starts\n"
+      "  foucault lab starts --seed 7 --count 1 --out start");
   return {starts, [o](Call& call) { study_starts(*o, call); }};
 }
 

@@ -14,9 +14,9 @@ std::function<void(Call&)> declare_learn(CLI::App& app) {
     bool no_report = false;
   };
   const auto o = std::make_shared<Options>();
-  app.add_option("LOG", o->job.logs, "Rawlogs of one vehicle")->required();
+  add_input_option(app, "LOG", o->job.logs, "Rawlogs of one vehicle")->required();
   add_config_options(app, o->config, settings_help);
-  app.add_option("--out", o->job.out, "Folder for learned.yaml, metrics.json, report/")->required();
+  add_output_option(app, o->job.out, "Folder for learned.yaml, metrics.json, report/")->required();
   add_no_report_flag(app, o->no_report);
   app.footer(
       "\nA filter goes through each log; then the noise is sought with which its predictions are\n"

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "arguments.h"
 #include "command.h"
 #include "foucault/core/error.h"
 #include "foucault/page/report_page.h"
@@ -52,8 +53,12 @@ void redraw(const std::string& report, Console& console) {
 
 std::function<void(Call&)> declare_report(CLI::App& app) {
   const auto folder = std::make_shared<std::string>();
-  app.add_option("DIR", *folder, "Folder that 'foucault run' wrote, or its report folder")
+  add_input_option(app, "DIR", *folder, "Folder that 'foucault run' wrote, or its report folder")
       ->required();
+  app.footer(
+      "\nExamples:\n"
+      "  foucault report trip\n"
+      "  FOUCAULT_FONT=/usr/share/fonts/mine foucault report trip     in letters of your own");
   return [folder](Call& call) {
     const std::string report = report_folder(*folder);
     redraw(report, call.console);

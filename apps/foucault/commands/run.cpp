@@ -36,10 +36,10 @@ std::function<void(Call&)> declare_run(CLI::App& app) {
     bool no_report = false;
   };
   const auto o = std::make_shared<Options>();
-  app.add_option("LOG", o->job.log, "Rawlog to process")->required();
+  add_input_option(app, "LOG", o->job.log, "Rawlog to process")->required();
   app.add_option("--method", o->job.method, method_help())->capture_default_str();
   add_config_options(app, o->config, settings_help);
-  app.add_option("--out", o->job.out, "Folder for solution.csv, .tum, .kml, metrics.json, report/")
+  add_output_option(app, o->job.out, "Folder for solution.csv, .tum, .kml, metrics.json, report/")
       ->required();
   add_no_report_flag(app, o->no_report);
   app.add_flag("--profile", o->job.profile, "Say where the time went, stage by stage");

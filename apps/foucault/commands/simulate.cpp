@@ -41,7 +41,7 @@ std::function<void(Call&)> declare_simulate(CLI::App& app) {
     SimulationSettings settings;
     return describe_config(settings);
   });
-  app.add_option("--out", o->out, "Rawlog to write")->required();
+  add_output_option(app, o->out, "Rawlog to write")->required();
   app.footer(
       "\nExamples:\n"
       "  foucault simulate --imu ADIS16465 --duration 600 --seed 7 --out trip.rawlog\n"

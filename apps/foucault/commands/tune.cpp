@@ -26,12 +26,12 @@ std::function<void(Call&)> declare_tune(CLI::App& app) {
     bool no_report = false;
   };
   const auto o = std::make_shared<Options>();
-  app.add_option("LOG", o->job.logs, "Rawlogs")->required();
+  add_input_option(app, "LOG", o->job.logs, "Rawlogs")->required();
   add_config_options(app, o->config, config_help);
   app.get_option("--config")->required()->description("The grid, YAML");
   app.get_option("--set")->description("One key of the base; may be repeated");
   add_jobs_option(app, o->jobs);
-  app.add_option("--out", o->job.out, "Folder for results.csv, points.csv, best.yaml, report/")
+  add_output_option(app, o->job.out, "Folder for results.csv, points.csv, best.yaml, report/")
       ->required();
   add_no_report_flag(app, o->no_report);
   add_store_options(app, o->store);
@@ -44,7 +44,10 @@ std::function<void(Call&)> declare_tune(CLI::App& app) {
       "  method: rough                         # or methods: [refined, rough]\n"
       "  objective: horizontal                 # vertical; weighted\n"
       "  search: coarse_to_fine                # full\n"
-      "Finished runs are kept, by default in .DIR.foucault-records until the results are written:\n"
+      "\nExamples:\n"
+      "  foucault tune trip.rawlog --config grid.yaml --out trip-tuned\n"
+      "  foucault tune a.rawlog b.rawlog --config grid.yaml --set outages.length_s=30 --out both\n"
+      "\nFinished runs are kept, by default in .DIR.foucault-records until the results are written:\n"
       "after a kill the same command goes on there.");
   return [o](Call& call) {
     load_grid(o->config.file, o->config.assignments, o->job);

@@ -6,6 +6,7 @@
 #include "foucault/core/so3.h"
 #include "foucault/state/blocks.h"
 #include "pages/run_page.h"
+#include "texts/check_text.h"
 #include "texts/profile_text.h"
 #include "texts/rawlog_summary.h"
 #include "texts/run_text.h"
@@ -143,6 +144,19 @@ TEST(RunPage, ATableForWhatThereIs) {
   EXPECT_TRUE(metrics_tables({}).empty());
   EXPECT_EQ(key_numbers(some_result()).size(), 6u);
   EXPECT_EQ(key_numbers({}).size(), 3u);
+}
+
+TEST(CheckText, TellsWhatMustBeMended) {
+  using diagnosis::Severity;
+  const std::vector<diagnosis::Finding> findings{
+      {Severity::ok, "sigmas", "0.01 m", ""},
+      {Severity::error, "gravity", "mean 1.00 m/s^2", "name the unit"}};
+  EXPECT_EQ(subjects_to_mend(findings), std::vector<std::string>{"gravity"});
+  EXPECT_THAT(findings_text(findings), HasSubstr("-> name the unit"));
+  const nlohmann::json json = nlohmann::json::parse(findings_json("a.rawlog", findings));
+  EXPECT_FALSE(json["ok"].get<bool>());
+  EXPECT_EQ(json["findings"][1]["remedy"], "name the unit");
+  EXPECT_TRUE(nlohmann::json::parse(findings_json("a", {findings[0]}))["ok"].get<bool>());
 }
 
 }  // namespace

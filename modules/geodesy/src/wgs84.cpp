@@ -1,10 +1,7 @@
 #include "foucault/geodesy/wgs84.h"
 
-#include <mrpt/topography/conversions.h>
-
 #include <cmath>
 
-#include "foucault/core/constants.h"
 #include "foucault/core/so3.h"
 
 namespace foucault::geodesy::wgs84 {
@@ -28,12 +25,6 @@ double height_factor(double s2) {
   return 2 * (1 + kFlattening + kGravityRatio - 2 * kFlattening * s2);
 }
 
-constexpr double kDegreesPerRadian = 180 / kPi;
-
-/// Given to MRPT because its geodeticToGeocentric_WGS84 rounds the minor axis (52 um at the poles).
-/// Its geocentricToGeodetic is not used: 85 um wrong in latitude and lost at the south pole.
-mrpt::topography::TEllipsoid ellipsoid() { return {kSemiMajorAxis, kSemiMinorAxis, "WGS84"}; }
-
 }  // namespace
 
 double meridian_radius(double latitude) {
@@ -48,12 +39,11 @@ double transverse_radius(double latitude) {
 }
 
 Eigen::Vector3d geodetic_to_ecef(const Geodetic& position) {
-  const mrpt::topography::TGeodeticCoords geodetic(position.latitude * kDegreesPerRadian,
-                                                   position.longitude * kDegreesPerRadian,
-                                                   position.height);
-  mrpt::topography::TGeocentricCoords p;
-  mrpt::topography::geodeticToGeocentric(geodetic, p, ellipsoid());
-  return {p.x, p.y, p.z};
+  const double s = std::sin(position.latitude);
+  const double N = transverse_radius(position.latitude);
+  const double from_axis = (N + position.height) * std::cos(position.latitude);
+  return {from_axis * std::cos(position.longitude), from_axis * std::sin(position.longitude),
+          (N * (1 - kEccentricity2) + position.height) * s};
 }
 
 Geodetic ecef_to_geodetic(const Eigen::Vector3d& p_e) {

@@ -1,0 +1,114 @@
+/// What users of the installed package get: the programs of apps/examples, built outside of this
+/// tree, against the truth; and the program itself.
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <map>
+#include <sstream>
+
+#include "support/test_folder.h"
+
+namespace foucault::test {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Lt;
+using ::testing::Not;
+
+/// In a folder of its own.
+void shell(const TestFolder& folder, const std::string& command) {
+  const std::string all = "cd '" + folder.path().string() + "' && " + command;
+  ASSERT_EQ(std::system(all.c_str()), 0) << command;
+}
+
+std::string example(const std::string& name) { return FOUCAULT_EXAMPLES "/" + name; }
+
+std::vector<double> numbers(const std::string& line) {
+  std::vector<double> row;
+  std::istringstream stream(line);
+  for (std::string cell; std::getline(stream, cell, ',');) row.push_back(std::stod(cell));
+  return row;
+}
+
+/// Rows by their stamp in ms.
+std::map<long, std::vector<double>> table(const std::vector<std::string>& lines) {
+  std::map<long, std::vector<double>> rows;
+  for (const std::string& line : lines) {
+    const std::vector<double> row = numbers(line);
+    rows[std::lround(1e3 * row[0])] = row;
+  }
+  return rows;
+}
+
+TEST(EmbedEkf, IsWhereTheTruthIs) {
+  const TestFolder folder;
+  shell(folder, example("tables_of_a_trip") + " 300");
+  shell(folder, example("embed_ekf") + " imu.csv gnss.csv > solution.csv");
+  const auto truth = table(folder.lines("truth.csv"));
+  const auto solution = table(folder.lines("solution.csv"));
+  ASSERT_GT(solution.size(), 250u);
+  double squares = 0;
+  for (const auto& [stamp, row] : solution) {
+    ASSERT_EQ(truth.count(stamp), 1u) << stamp;
+    const std::vector<double>& at = truth.at(stamp);
+    const double north = (row[1] - at[1]) * 111e3;
+    const double east = (row[2] - at[2]) * 111e3 * std::cos(at[1] * M_PI / 180);
+    const double down = at[3] - row[3];
+    squares +=
+        std::pow(north / row[4], 2) + std::pow(east / row[5], 2) + std::pow(down / row[6], 2);
+    EXPECT_LT(std::hypot(north, east), 5 * 0.0145);  // fixes of 1 cm along north and east
+  }
+  // 3 if sigmas are right; errors of neighbouring epochs belong together, so the mean of 300
+  // varies.
+  EXPECT_GT(squares / static_cast<double>(solution.size()), 2);
+  EXPECT_LT(squares / static_cast<double>(solution.size()), 4);
+}
+
+TEST(EmbedEkf, NeedsFewLibrariesAndNoneOfMrptAndOpencv) {
+  const TestFolder folder;
+  shell(folder, "ldd " + example("embed_ekf") + " > libraries");
+  EXPECT_THAT(folder.lines("libraries").size(), Lt(21u));
+  EXPECT_THAT(folder.text("libraries"), HasSubstr("libstdc++"));
+  EXPECT_THAT(folder.text("libraries"), Not(HasSubstr("mrpt")));
+  EXPECT_THAT(folder.text("libraries"), Not(HasSubstr("opencv")));
+}
+
+std::map<std::string, double> distances_off(const std::string& arguments) {
+  const TestFolder folder;
+  shell(folder, example("own_measurement") + arguments + " > distances");
+  std::map<std::string, double> off;
+  for (const std::string& line : folder.lines("distances")) {
+    off[line.substr(0, line.find(','))] = std::stod(line.substr(line.find(',') + 1));
+  }
+  return off;
+}
+
+TEST(OwnMeasurement, HoldsEveryEstimatorInAnOutage) {
+  const std::map<std::string, double> with = distances_off("");
+  const std::map<std::string, double> without = distances_off(" none");
+  for (const char* name : {"ekf", "refined", "rough", "full", "rts", "batch"}) {
+    ASSERT_EQ(with.count(name), 1u) << name;
+    EXPECT_LT(with.at(name), 0.3) << name;     // ranges of 5 cm, seen at a sharp angle
+    EXPECT_GT(without.at(name), 1.0) << name;  // 40 s of a consumer IMU
+  }
+}
+
+TEST(InstalledProgram, IsThisVersion) {
+  const TestFolder folder;
+  shell(folder, FOUCAULT_PREFIX "/bin/foucault -V > version");
+  EXPECT_EQ(folder.text("version"), "foucault " FOUCAULT_VERSION "\n");
+}
+
+TEST(InstalledProgram, HasItsManualAndCompletions) {
+  for (const char* file :
+       {"share/man/man1/foucault.1", "share/bash-completion/completions/foucault",
+        "share/zsh/vendor-completions/_foucault", "share/foucault/configs/consumer_mems.yaml"}) {
+    EXPECT_TRUE(std::filesystem::is_regular_file(std::filesystem::path(FOUCAULT_PREFIX) / file))
+        << file;
+  }
+}
+
+}  // namespace
+}  // namespace foucault::test
