@@ -47,7 +47,8 @@ std::function<void(Call&)> declare_tune(CLI::App& app) {
       "\nExamples:\n"
       "  foucault tune trip.rawlog --config grid.yaml --out trip-tuned\n"
       "  foucault tune a.rawlog b.rawlog --config grid.yaml --set outages.length_s=30 --out both\n"
-      "\nFinished runs are kept, by default in .DIR.foucault-records until the results are written:\n"
+      "\nFinished runs are kept, by default in .DIR.foucault-records until the results are "
+      "written:\n"
       "after a kill the same command goes on there.");
   return [o](Call& call) {
     load_grid(o->config.file, o->config.assignments, o->job);
