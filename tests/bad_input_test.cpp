@@ -220,7 +220,7 @@ TEST_F(BadInput, EarlierResultsOutliveARunThatFails) {
   expect_bad_log(HasSubstr("sort the log"));  // in the middle of the run
   EXPECT_EQ(folder_.text("out/solution.csv"), solution);
   const fs::directory_iterator begin(folder_.path() / "out");
-  EXPECT_EQ(std::distance(begin, fs::directory_iterator{}), 6);  // three, metrics, config, report
+  EXPECT_EQ(std::distance(begin, fs::directory_iterator{}), 7);  // four, metrics, config, report
 }
 
 TEST_F(BadInput, OutputThatCannotBeWritten) {

@@ -28,6 +28,7 @@ using calibration::NoiseModel;
 /// How the settings call an axis, and its unit there.
 struct Known {
   const calibration::NoiseAxis& axis;
+  const char* name;
   const char* key;
   const char* unit;
   double (*shown)(double value);
@@ -41,15 +42,15 @@ const std::vector<Known>& known_axes() {
   const auto of_gyro = [](double v) { return v / kDegree * kSecondsPerHour; };
   const auto of_accel = [](double v) { return v * 1e5; };
   static const std::vector<Known> all{
-      {axis::gyro_white, "imu.arw_deg_sqrt_h", "deg/sqrt(h)", of_white_gyro},
-      {axis::accel_white, "imu.vrw_m_s_sqrt_h", "m/s/sqrt(h)", of_white_accel},
-      {axis::gyro_bias, "imu.gyro_bias_deg_h", "deg/h", of_gyro},
-      {axis::accel_bias, "imu.accel_bias_mgal", "mGal", of_accel},
-      {axis::fix_white, "gnss.sigma_scale", "", as_it_is},
-      {axis::velocity, "sigmas of GNSS velocities, factor", "", as_it_is},
-      {axis::slip, "aids.nonholonomic_sigma_m_s", "m/s", as_it_is},
-      {axis::bounce, "aids.nonholonomic_down_sigma_m_s", "m/s", as_it_is},
-      {axis::wheel, "aids.wheel_speed_sigma_m_s", "m/s", as_it_is},
+      {axis::gyro_white, "Gyro white", "imu.arw_deg_sqrt_h", "deg/sqrt(h)", of_white_gyro},
+      {axis::accel_white, "Accel. white", "imu.vrw_m_s_sqrt_h", "m/s/sqrt(h)", of_white_accel},
+      {axis::gyro_bias, "Gyro bias", "imu.gyro_bias_deg_h", "deg/h", of_gyro},
+      {axis::accel_bias, "Accel. bias", "imu.accel_bias_mgal", "mGal", of_accel},
+      {axis::fix_white, "Fixes", "gnss.sigma_scale", "", as_it_is},
+      {axis::velocity, "Velocities", "sigmas of GNSS velocities, factor", "", as_it_is},
+      {axis::slip, "Slip", "aids.nonholonomic_sigma_m_s", "m/s", as_it_is},
+      {axis::bounce, "Up and down", "aids.nonholonomic_down_sigma_m_s", "m/s", as_it_is},
+      {axis::wheel, "Wheels", "aids.wheel_speed_sigma_m_s", "m/s", as_it_is},
   };
   return all;
 }
@@ -69,7 +70,7 @@ std::vector<LearnedValue> values_of(const Learned& learned, const calibration::R
     for (const LearnedAxis& one : learned.axes) {
       if (one.axis.name != known.axis.name) continue;
       const double unit = unit_of(one.axis, way);
-      values.push_back({known.key, known.unit, known.shown(unit * one.told),
+      values.push_back({known.name, known.key, known.unit, known.shown(unit * one.told),
                         known.shown(unit * one.value), std::exp(one.log_sigma), one.observable,
                         one.profile_factors, one.profile});
     }
@@ -190,8 +191,8 @@ std::vector<std::string> summary_lines(const LearnResult& result) {
         v.observable
             ? fmt::format("{:<34} {:>9.3g} {:<12} told {:.3g}; one sigma: times or by {:.2f}",
                           v.key, v.value, v.unit, v.told, v.factor)
-            : fmt::format("{:<34} {:>9.3g} {:<12} told; not observable in this recording", v.key,
-                          v.value, v.unit));
+            : fmt::format("{:<34} {:>9} {:<12} told {:.3g}; not observable in this recording",
+                          v.key, "", v.unit, v.told));
   }
   if (result.lasting) {
     lines.push_back(fmt::format(

@@ -20,7 +20,7 @@ struct LearnJob {
 
 /// One learned number as people know it: the key that takes it, in its unit.
 struct LearnedValue {
-  std::string key, unit;
+  std::string name, key, unit;
   double told = 0, value = 0;
   double factor = 1;  ///< one sigma of the value, by which it may be larger or smaller
   bool observable = true;

@@ -118,9 +118,13 @@ LearnedNoise noise_of(const calibration::NoiseModel& model, const calibration::R
       std::max(noise.imu.accel_turn_on_sigma, noise.imu.accel_bias_sigma);
   noise.sigma_scale = model.fix_white;
   const Eigen::Vector3d slip = told_sigma(way, NoiseOf::slip);
-  if (slip[0] > 0) noise.slip_m_s = Eigen::Vector2d(model.slip * slip[0], model.bounce * slip[1]);
+  const auto sigma = [](double factor, double told) {
+    return std::hypot(factor * told, calibration::kLeastWheelNoise);
+  };
+  if (slip[0] > 0)
+    noise.slip_m_s = Eigen::Vector2d(sigma(model.slip, slip[0]), sigma(model.bounce, slip[1]));
   const double wheel = told_sigma(way, NoiseOf::wheel)[0];
-  if (wheel > 0) noise.wheel_m_s = model.wheel * wheel;
+  if (wheel > 0) noise.wheel_m_s = sigma(model.wheel, wheel);
   return noise;
 }
 

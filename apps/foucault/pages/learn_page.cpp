@@ -27,8 +27,6 @@ page::Table values_table(const LearnResult& result) {
   return table;
 }
 
-std::string short_name(const std::string& key) { return key.substr(key.find('.') + 1); }
-
 /// Ratio to what was told, on a logarithmic axis.
 plot::Figure values_figure(const LearnResult& result) {
   plot::Figure figure{"learned", "Learned noise, in what was told"};
@@ -50,7 +48,7 @@ plot::Figure values_figure(const LearnResult& result) {
   unknown.shape = plot::Shape::ring;
   for (std::size_t i = 0; i < result.values.size(); ++i) {
     const LearnedValue& v = result.values[i];
-    panel.x.categories.push_back(short_name(v.key));
+    panel.x.categories.push_back(v.name);
     plot::Series& series = v.observable ? known : unknown;
     const double ratio = v.value / v.told;
     series.x.push_back(static_cast<double>(i));
@@ -69,20 +67,21 @@ plot::Figure profile_figure(const LearnResult& result) {
   figure.caption =
       "Logarithm of the likelihood by factors of each number, all others as learned. It falls by "
       "half at one sigma and by two at two; where it is flat, the recording does not tell.";
+  constexpr double kDeepest = -12;
   figure.columns = 3;
   figure.height_mm = 45.0 * static_cast<double>((result.values.size() + 2) / 3);
   for (const LearnedValue& v : result.values) {
     plot::Panel panel;
-    panel.title = short_name(v.key);
+    panel.title = v.name;
     panel.x = {"Factor", ""};
     panel.x.kind = plot::AxisKind::log;
     panel.y = {"Log-likelihood", ""};
-    panel.y.min = -12;
+    panel.y.min = kDeepest;
     panel.y.max = 1;
     panel.legend = plot::LegendPlace::none;
-    plot::Series series{"", short_name(v.key)};
+    plot::Series series{"", v.name};
     series.x = v.profile_factors;
-    series.y = v.profile;
+    for (const double fall : v.profile) series.y.push_back(fall < kDeepest ? plot::kNoValue : fall);
     panel.series.push_back(std::move(series));
     figure.panels.push_back(std::move(panel));
   }

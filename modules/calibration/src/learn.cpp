@@ -222,7 +222,7 @@ std::vector<LearnedAxis> learned_axes(const LearnOptions& options, const NoiseMo
 /// From a fifth to five times the value.
 void add_profiles(Landscape& landscape, const Place& best, std::vector<LearnedAxis>& axes) {
   for (std::size_t i = 0; i < axes.size(); ++i) {
-    for (const double factor : {0.2, 0.35, 0.5, 0.7, 0.85, 1.0, 1.2, 1.4, 2.0, 2.8, 5.0}) {
+    for (const double factor : {0.2, 0.35, 0.5, 0.7, 0.8, 0.9, 1.0, 1.1, 1.25, 1.4, 2.0, 2.8, 5.0}) {
       Eigen::VectorXd x = best.x;
       x[static_cast<Eigen::Index>(i)] += std::log(factor);
       axes[i].profile_factors.push_back(factor);

@@ -71,8 +71,11 @@ class WayFilter {
   void correct(const WayMeasurement& z) { mean_.head<kNode>() -= z.correction; }
 
  private:
+  /// In units of what was told.
   double variance(const WayMeasurement& z, int row) const {
-    return std::pow(factor_of(z.kind, row, noise_), 2);
+    const bool of_wheels = z.kind == NoiseOf::slip || z.kind == NoiseOf::wheel;
+    const double least = of_wheels ? kLeastWheelNoise / z.told_sigma[row] : 0;
+    return std::pow(factor_of(z.kind, row, noise_), 2) + least * least;
   }
 
   static Eigen::Matrix<double, kSize, 3> columns(const WayMeasurement& z) {
