@@ -89,10 +89,8 @@ std::optional<std::pair<double, double>> lasting_errors(
   options.profile = false;
   options.axes.insert(options.axes.end(), {axis::fix_coloured, axis::fix_tau});
   const Learned with = calibration::learn(ways, start, options);
-  NoiseModel none = without.noise;
-  const double gain = calibration::log_likelihood(ways, with.noise, options) -
-                      calibration::log_likelihood(ways, none, options);
-  if (diagnosis::chi_square_tail(std::max(2 * gain, 0.0), 2) > kChance) return std::nullopt;
+  const double gain = calibration::gain_of(ways, without.noise, with.noise, options);
+  if (diagnosis::chi_square_tail(2 * gain, 2) > kChance) return std::nullopt;
   return std::pair{with.noise.fix_coloured, with.noise.fix_tau_s};
 }
 

@@ -11,6 +11,18 @@ namespace {
 
 constexpr double kIndependent = 15;  // [s], from one prediction to another
 
+double length_of(const std::vector<RecordedWay>& ways) {
+  double length = 0;
+  for (const RecordedWay& way : ways) length += length_s(way);
+  return length;
+}
+
+/// From start to start of predictions.
+double every_s(const std::vector<RecordedWay>& ways, int starts) {
+  constexpr double kClosest = 5, kFarthest = 60;  // [s]
+  return std::clamp(length_of(ways) / starts, kClosest, kFarthest);
+}
+
 /// The function that is climbed, over the logarithms of the factors of what was told.
 class Landscape {
  public:
@@ -20,12 +32,10 @@ class Landscape {
         options_(options),
         told_(told),
         prior_(1 / std::pow(std::log(options.told_within), 2)) {
-    constexpr double kClosest = 5, kFarthest = 60;  // [s]
-    double length = 0;
-    for (const RecordedWay& way : ways) length += length_s(way);
-    horizons_ = {options.horizons_s, std::clamp(length / starts, kClosest, kFarthest)};
+    const double length = length_of(ways);
+    horizons_ = {options.horizons_s, every_s(ways, starts)};
     for (const Prediction& p : predict(origin())) weights_[p.horizon_s] += 1;
-    for (auto& [horizon, weight] : weights_) weight = length / kIndependent / weight;
+    for (auto& [horizon, weight] : weights_) weight = std::min(1.0, length / kIndependent / weight);
   }
 
   Eigen::Index size() const { return static_cast<Eigen::Index>(options_.axes.size()); }
@@ -222,7 +232,8 @@ std::vector<LearnedAxis> learned_axes(const LearnOptions& options, const NoiseMo
 /// From a fifth to five times the value.
 void add_profiles(Landscape& landscape, const Place& best, std::vector<LearnedAxis>& axes) {
   for (std::size_t i = 0; i < axes.size(); ++i) {
-    for (const double factor : {0.2, 0.35, 0.5, 0.7, 0.8, 0.9, 1.0, 1.1, 1.25, 1.4, 2.0, 2.8, 5.0}) {
+    for (const double factor :
+         {0.2, 0.35, 0.5, 0.7, 0.8, 0.9, 1.0, 1.1, 1.25, 1.4, 2.0, 2.8, 5.0}) {
       Eigen::VectorXd x = best.x;
       x[static_cast<Eigen::Index>(i)] += std::log(factor);
       axes[i].profile_factors.push_back(factor);
@@ -265,17 +276,29 @@ Learned learn(const std::vector<RecordedWay>& ways, const NoiseModel& told,
   out.noise = landscape.at(best.x);
   out.axes = learned_axes(options, told, out.noise, best.information.inverse());
   if (options.profile) add_profiles(landscape, best, out.axes);
-  out.gain = best.height - before.height;
+  out.gain = gain_of(ways, told, out.noise, options);
   out.passes = coarse.passes() + landscape.passes();
   out.before = normalized_errors(before.predictions);
   out.after = normalized_errors(best.predictions);
   return out;
 }
 
-double log_likelihood(const std::vector<RecordedWay>& ways, const NoiseModel& noise,
-                      const LearnOptions& options) {
-  Landscape landscape(ways, noise, options, options.starts);
-  return place_at(landscape, landscape.origin()).height;
+double gain_of(const std::vector<RecordedWay>& ways, const NoiseModel& noise,
+               const NoiseModel& other, const LearnOptions& options) {
+  const Horizons horizons{options.horizons_s, every_s(ways, options.starts)};
+  std::map<double, double> gains;
+  for (const RecordedWay& way : ways) {
+    const std::vector<Prediction> of_one = predictions(way, noise, horizons);
+    const std::vector<Prediction> of_other = predictions(way, other, horizons);
+    for (std::size_t k = 0; k < of_one.size(); ++k) {
+      const double horizon = of_one[k].horizon_s;
+      const double share = horizon > 0 ? std::min(1.0, horizons.every_s / horizon) : 1;
+      gains[horizon] += share * (log_density(of_other[k]) - log_density(of_one[k]));
+    }
+  }
+  double most = 0;
+  for (const auto& [horizon, gain] : gains) most = std::max(most, gain);
+  return most;
 }
 
 }  // namespace foucault::calibration

@@ -24,14 +24,15 @@ struct LearnedAxis {
   double told = 0, value = 0;
   double log_sigma = 0;    ///< of the logarithm, by the curvature of the likelihood
   bool observable = true;  ///< the recording tells at least half of what is known of it
-  /// Logarithm of the likelihood over that of the value, by factors of the value, all else as it is.
+  /// Logarithm of the likelihood over that of the value, by factors of the value, all else as it
+  /// is.
   std::vector<double> profile_factors, profile;
 };
 
 struct Learned {
   NoiseModel noise;
   std::vector<LearnedAxis> axes;
-  double gain = 0;  ///< of the logarithm of likelihood and prior over that of the told noise
+  double gain = 0;  ///< over the told noise, as gain_of()
   int passes = 0;
   std::vector<NormalizedError> before, after;  ///< with the told and with the learned noise
 };
@@ -53,8 +54,11 @@ NoiseAxes axes_of(const std::vector<RecordedWay>& ways);
 Learned learn(const std::vector<RecordedWay>& ways, const NoiseModel& told,
               const LearnOptions& options);
 
-/// Logarithm of the densities of all predictions, as learn() weighs them, without a prior.
-double log_likelihood(const std::vector<RecordedWay>& ways, const NoiseModel& noise,
-                      const LearnOptions& options);
+/// How much more likely one noise is than another: of the next fixes, and of those at each horizon,
+/// the largest gain of the logarithm of densities, where predictions that overlap count as one.
+/// Twice that is about a chi-square of as many degrees of freedom as numbers were learned, if
+/// `noise` was right.
+double gain_of(const std::vector<RecordedWay>& ways, const NoiseModel& noise,
+               const NoiseModel& other, const LearnOptions& options);
 
 }  // namespace foucault::calibration
