@@ -160,7 +160,7 @@ std::optional<Place> higher(Landscape& landscape, const Place& from, const Lands
 
 Place climbed(Landscape& landscape, const Eigen::VectorXd& start) {
   constexpr int kMostRounds = 20;
-  constexpr double kLittle = 0.1;  // of a logarithm of a likelihood
+  constexpr double kLittle = 0.02;  // of a logarithm of a likelihood
   Place place = place_at(landscape, start);
   double damping = 0;
   for (int round = 0; round < kMostRounds; ++round) {
@@ -291,6 +291,7 @@ double gain_of(const std::vector<RecordedWay>& ways, const NoiseModel& noise,
     const std::vector<Prediction> of_one = predictions(way, noise, horizons);
     const std::vector<Prediction> of_other = predictions(way, other, horizons);
     for (std::size_t k = 0; k < of_one.size(); ++k) {
+      if (of_one[k].kind != NoiseOf::position) continue;
       const double horizon = of_one[k].horizon_s;
       const double share = horizon > 0 ? std::min(1.0, horizons.every_s / horizon) : 1;
       gains[horizon] += share * (log_density(of_other[k]) - log_density(of_one[k]));

@@ -66,8 +66,8 @@ CalibrateOptions CalibrateOptions::resolved(const Carried& carried) const {
   const auto resolve = [](std::string& choice, bool on) {
     if (choice == "auto") choice = on ? "on" : "off";
   };
-  for (std::string* always : {&out.noise, &out.gyro_scale, &out.accel_scale, &out.lever_arm,
-                              &out.time_offset, &out.time_drift})
+  for (std::string* always :
+       {&out.gyro_scale, &out.accel_scale, &out.lever_arm, &out.time_offset, &out.time_drift})
     resolve(*always, true);
   for (std::string* rare : {&out.gyro_cross_axis, &out.accel_cross_axis}) resolve(*rare, false);
   for (std::string* rolling : {&out.mounting, &out.wheel_lever_arm, &out.cornering_compliance})

@@ -54,10 +54,10 @@ NoiseAxes axes_of(const std::vector<RecordedWay>& ways);
 Learned learn(const std::vector<RecordedWay>& ways, const NoiseModel& told,
               const LearnOptions& options);
 
-/// How much more likely one noise is than another: of the next fixes, and of those at each horizon,
-/// the largest gain of the logarithm of densities, where predictions that overlap count as one.
-/// Twice that is about a chi-square of as many degrees of freedom as numbers were learned, if
-/// `noise` was right.
+/// How much more likely one noise makes the fixes than another: of the next fixes, and of those at
+/// each horizon, the largest gain of the logarithm of densities, where predictions that overlap
+/// count as one. Twice that is about a chi-square of as many degrees of freedom as numbers were
+/// learned, if `noise` was right.
 double gain_of(const std::vector<RecordedWay>& ways, const NoiseModel& noise,
                const NoiseModel& other, const LearnOptions& options);
 

@@ -44,7 +44,7 @@ class CalibrateOptions : public Configurable {
     bool rolling = false;      ///< wheels were seen to roll without slip
     bool wheel_speed = false;  ///< and their speed to be that of the vehicle
   };
-  /// With `on` or `off` in the place of `auto`.
+  /// Blocks `on` or `off` in the place of `auto`; the noise stays as it is.
   CalibrateOptions resolved(const Carried& carried) const;
 
   /// Of the blocks that are `on`.
