@@ -28,7 +28,8 @@ class Level {
 /// bounded memory.
 class RunFacts {
  public:
-  explicit RunFacts(const state::Mounting& mounting = {}) : mounting_(mounting) {}
+  RunFacts() = default;
+  explicit RunFacts(const state::Mounting& mounting) : mounting_(mounting) {}
 
   void measurement(const Measurement& measurement);
   void epoch(const state::Epoch& epoch);

@@ -30,20 +30,27 @@ class Watcher : public state::Sink {
   calibration::UnfoldedWay way;
 };
 
+/// One that leaves its way, for the noise, or that does not.
+std::unique_ptr<measurement::Navigator> filter_of(const Settings& settings, bool leaves_way,
+                                                  calibration::UnfoldedWay& way) {
+  ekf::EkfOptions coarse = settings.ekf;
+  coarse.cov_interval_s = 0.5;
+  const imu::ImuNoise noise = settings.imu.noise();
+  const state::Layout layout = settings.calibrate.layout();
+  if (leaves_way) return std::make_unique<calibration::WayRecorder>(noise, layout, coarse, way);
+  return std::make_unique<ekf::EkfNavigator>(noise, layout, coarse);
+}
+
 /// A filter through the log; none where it cannot be processed, which the run itself tells.
 std::optional<Watcher> look_through(const std::string& log, const Settings& settings,
-                                    Console& console) {
+                                    bool leaves_way, Console& console) {
   Watcher watcher;
   try {
     rawlog::RawlogSource source(log, settings.imu.sample_kind(), settings.rawlog);
     watcher.told = {settings.calibrate.layout(), settings.calibrate.time_offset_s,
                     source.lever_arm(), source.mounting().q_v_b};
-    ekf::EkfOptions coarse = settings.ekf;
-    coarse.cov_interval_s = 0.5;
     const std::unique_ptr<state::Estimator> estimator =
-        drive(std::make_unique<calibration::WayRecorder>(
-                  settings.imu.noise(), settings.calibrate.layout(), coarse, watcher.way),
-              settings, source.mounting(), watcher);
+        drive(filter_of(settings, leaves_way, watcher.way), settings, source.mounting(), watcher);
     while (const std::optional<Measurement> measurement = source.next()) {
       estimator->process(*measurement);
       console.progress("looking through", source.progress());
@@ -80,8 +87,8 @@ bool leaves_open(const Settings& settings) {
   if (c.mode == "none") return false;
   const bool wheels = aids.uses(aids.nonholonomic) || aids.uses(aids.wheel_speed);
   return c.time_offset != "off" || c.noise != "off" ||
-         (wheels &&
-          (c.mounting == "auto" || c.wheel_scale == "auto" || c.wheel_lever_arm == "auto"));
+         (wheels && (c.mounting == "auto" || c.wheel_scale == "auto" ||
+                     c.wheel_lever_arm == "auto" || c.cornering_compliance == "auto"));
 }
 
 std::string noise_text(const Settings& settings) {
@@ -104,7 +111,7 @@ std::string noise_text(const Settings& settings) {
 
 calibration::RecordedWay recorded_way(const std::string& log, const Settings& settings,
                                       Console& console) {
-  const std::optional<Watcher> watcher = look_through(log, settings, console);
+  const std::optional<Watcher> watcher = look_through(log, settings, true, console);
   if (!watcher) return {};
   return calibration::folded(watcher->way, watcher->last->slow);
 }
@@ -148,7 +155,7 @@ Survey Surveyor::survey(const std::string& log, Settings settings) {
   found.time_offset_s = settings.calibrate.time_offset_s;
   settings.calibrate = settings.calibrate.resolved({true, true});
   for (int pass = 0; pass < kMostPasses; ++pass) {
-    const std::optional<Watcher> watcher = look_through(log, settings, console_);
+    const std::optional<Watcher> watcher = look_through(log, settings, asks_noise, console_);
     if (!watcher) break;
     found.blocks = evaluation::calibrated_blocks(
         state::as_users_know(*watcher->last, watcher->told), watcher->told.layout);
@@ -157,11 +164,11 @@ Survey Surveyor::survey(const std::string& log, Settings settings) {
     found.carried = {uses(*watcher, "nonholonomic"), uses(*watcher, "wheel_speed")};
     const std::optional<double> rest = rest_of_offset(*watcher, settings.calibrate.layout());
     const bool moves = rest && std::abs(found.time_offset_s + *rest) < kMost;
-    const calibration::RecordedWay way = calibration::folded(watcher->way, watcher->last->slow);
-    const bool learns = asks_noise && !way.empty() && (pass > 0 || !moves);
+    const bool learns = asks_noise && !watcher->way.empty() && (pass > 0 || !moves);
     if (learns) {
       asks_noise = false;
-      found.noise = learn_noise(log, way, settings);
+      found.noise =
+          learn_noise(log, calibration::folded(watcher->way, watcher->last->slow), settings);
       found.noise->apply_to(settings);
     }
     if (moves) {
@@ -175,7 +182,8 @@ Survey Surveyor::survey(const std::string& log, Settings settings) {
 
 /// What the methods take of slip and of the wheels' speed is found whatever was told. The rest as
 /// it was told, unless the recording contradicts it: twice the gain of the likelihood would be a
-/// chi-square of as many degrees of freedom as numbers were told.
+/// chi-square of as many degrees of freedom as numbers were told, at the next fix and at each
+/// horizon.
 LearnedNoise Surveyor::learn_noise(const std::string& log, const calibration::RecordedWay& way,
                                    const Settings& settings) {
   constexpr double kChance = 1e-4;
@@ -187,15 +195,17 @@ LearnedNoise Surveyor::learn_noise(const std::string& log, const calibration::Re
   const calibration::Learned aids = calibration::learn(ways, told, {axes.of_aids});
   const calibration::Learned all = calibration::learn(ways, aids.noise, {axes.all()});
   console_.clear_progress();
+  const double tries = 1 + static_cast<double>(calibration::LearnOptions{}.horizons_s.size());
   const double chance =
-      diagnosis::chi_square_tail(2 * all.gain, static_cast<int>(axes.told.size()));
+      tries * diagnosis::chi_square_tail(2 * all.gain, static_cast<int>(axes.told.size()));
   if (settings.calibrate.noise == "auto" && chance > kChance) return noise_of(aids.noise, way);
   const LearnedNoise noise = noise_of(all.noise, way);
   Settings with = settings;
   noise.apply_to(with);
   console_.warn(fmt::format(
-      "{}: noise as the recording shows it, not as told: {} (calibrate.noise=off: as told)", log,
-      noise_text(with)));
+      "{}: noise as the recording shows it, not as configured: {} (calibrate.noise=off: as "
+      "configured)",
+      log, noise_text(with)));
   return noise;
 }
 

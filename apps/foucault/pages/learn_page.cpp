@@ -27,6 +27,21 @@ page::Table values_table(const LearnResult& result) {
   return table;
 }
 
+plot::Series points(const char* label, const char* column, plot::Ink ink, plot::Shape shape) {
+  plot::Series series{label, column, plot::Mark::points, ink, shape};
+  series.size = 6;
+  return series;
+}
+
+/// Places beside each other, numbers about one on a logarithmic axis.
+plot::Panel about_one(const char* label, const char* one) {
+  plot::Panel panel;
+  panel.x.kind = plot::AxisKind::category;
+  panel.y = {label, "", plot::AxisKind::log};
+  panel.lines.push_back({plot::Direction::horizontal, 1, one});
+  return panel;
+}
+
 /// Ratio to what was told, on a logarithmic axis.
 plot::Figure values_figure(const LearnResult& result) {
   plot::Figure figure{"learned", "Learned noise, in what was told"};
@@ -34,18 +49,10 @@ plot::Figure values_figure(const LearnResult& result) {
       "Each number divided by what was told (the line at one), with bars of two sigmas. Grey: the "
       "recording does not tell it.";
   figure.height_mm = 90;
-  plot::Panel panel;
-  panel.y = {"Learned / told", ""};
-  panel.y.kind = plot::AxisKind::log;
-  panel.x.kind = plot::AxisKind::category;
-  panel.lines.push_back({plot::Direction::horizontal, 1, "as told"});
-  plot::Series known{"learned, 2σ", "learned"}, unknown{"not observable", "not_observable"};
-  for (plot::Series* series : {&known, &unknown}) {
-    series->mark = plot::Mark::points;
-    series->size = 6;
-  }
-  unknown.ink = plot::Ink::gray;
-  unknown.shape = plot::Shape::ring;
+  plot::Panel panel = about_one("Learned / told", "as told");
+  plot::Series known = points("learned, 2σ", "learned", plot::Ink::blue, plot::Shape::dot);
+  plot::Series unknown =
+      points("not observable", "not_observable", plot::Ink::gray, plot::Shape::ring);
   for (std::size_t i = 0; i < result.values.size(); ++i) {
     const LearnedValue& v = result.values[i];
     panel.x.categories.push_back(v.name);
@@ -73,8 +80,7 @@ plot::Figure profile_figure(const LearnResult& result) {
   for (const LearnedValue& v : result.values) {
     plot::Panel panel;
     panel.title = v.name;
-    panel.x = {"Factor", ""};
-    panel.x.kind = plot::AxisKind::log;
+    panel.x = {"Factor", "", plot::AxisKind::log};
     panel.y = {"Log-likelihood", ""};
     panel.y.min = kDeepest;
     panel.y.max = 1;
@@ -95,18 +101,9 @@ plot::Figure horizons_figure(const LearnResult& result) {
       "Squared errors of predicted fixes by their variance, the mean of a row: one is right, more "
       "is overconfident.";
   figure.height_mm = 80;
-  plot::Panel panel;
-  panel.x.kind = plot::AxisKind::category;
-  panel.y = {"Error² / variance", ""};
-  panel.y.kind = plot::AxisKind::log;
-  panel.lines.push_back({plot::Direction::horizontal, 1, "right"});
-  plot::Series before{"as told", "told"}, after{"as learned", "learned"};
-  before.ink = plot::Ink::orange;
-  before.shape = plot::Shape::ring;
-  for (plot::Series* series : {&before, &after}) {
-    series->mark = plot::Mark::points;
-    series->size = 6;
-  }
+  plot::Panel panel = about_one("Error² / variance", "right");
+  plot::Series before = points("as told", "told", plot::Ink::orange, plot::Shape::ring);
+  plot::Series after = points("as learned", "learned", plot::Ink::blue, plot::Shape::dot);
   for (std::size_t i = 0; i < result.after.size(); ++i) {
     const double horizon = result.after[i].horizon_s;
     panel.x.categories.push_back(horizon > 0 ? fmt::format("{:.0f} s", horizon) : "next fix");

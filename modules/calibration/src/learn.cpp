@@ -23,6 +23,31 @@ double every_s(const std::vector<RecordedWay>& ways, int starts) {
   return std::clamp(length_of(ways) / starts, kClosest, kFarthest);
 }
 
+std::vector<Prediction> all_predictions(const std::vector<RecordedWay>& ways,
+                                        const NoiseModel& noise, const Horizons& horizons) {
+  std::vector<Prediction> all;
+  for (const RecordedWay& way : ways) {
+    const std::vector<Prediction> of_way = predictions(way, noise, horizons);
+    all.insert(all.end(), of_way.begin(), of_way.end());
+  }
+  return all;
+}
+
+/// Of fixes, the largest of a horizon, of the same predictions with two noises.
+double gain_of(const std::vector<Prediction>& one, const std::vector<Prediction>& other,
+               double every_s) {
+  std::map<double, double> gains;
+  for (std::size_t k = 0; k < one.size(); ++k) {
+    if (one[k].kind != NoiseOf::position) continue;
+    const double horizon = one[k].horizon_s;
+    const double share = horizon > 0 ? std::min(1.0, every_s / horizon) : 1;
+    gains[horizon] += share * (log_density(other[k]) - log_density(one[k]));
+  }
+  double most = 0;
+  for (const auto& [horizon, gain] : gains) most = std::max(most, gain);
+  return most;
+}
+
 /// The function that is climbed, over the logarithms of the factors of what was told.
 class Landscape {
  public:
@@ -41,6 +66,7 @@ class Landscape {
   Eigen::Index size() const { return static_cast<Eigen::Index>(options_.axes.size()); }
   Eigen::VectorXd origin() const { return Eigen::VectorXd::Zero(size()); }
   int passes() const { return passes_; }
+  double every() const { return horizons_.every_s; }  ///< [s]
 
   NoiseModel at(const Eigen::VectorXd& x) const {
     NoiseModel model = told_;
@@ -51,12 +77,7 @@ class Landscape {
 
   std::vector<Prediction> predict(const Eigen::VectorXd& x) {
     ++passes_;
-    std::vector<Prediction> all;
-    for (const RecordedWay& way : ways_) {
-      const std::vector<Prediction> of_way = predictions(way, at(x), horizons_);
-      all.insert(all.end(), of_way.begin(), of_way.end());
-    }
-    return all;
+    return all_predictions(ways_, at(x), horizons_);
   }
 
   double height(const std::vector<Prediction>& all, const Eigen::VectorXd& x) const {
@@ -276,7 +297,7 @@ Learned learn(const std::vector<RecordedWay>& ways, const NoiseModel& told,
   out.noise = landscape.at(best.x);
   out.axes = learned_axes(options, told, out.noise, best.information.inverse());
   if (options.profile) add_profiles(landscape, best, out.axes);
-  out.gain = gain_of(ways, told, out.noise, options);
+  out.gain = gain_of(before.predictions, best.predictions, landscape.every());
   out.passes = coarse.passes() + landscape.passes();
   out.before = normalized_errors(before.predictions);
   out.after = normalized_errors(best.predictions);
@@ -286,20 +307,8 @@ Learned learn(const std::vector<RecordedWay>& ways, const NoiseModel& told,
 double gain_of(const std::vector<RecordedWay>& ways, const NoiseModel& noise,
                const NoiseModel& other, const LearnOptions& options) {
   const Horizons horizons{options.horizons_s, every_s(ways, options.starts)};
-  std::map<double, double> gains;
-  for (const RecordedWay& way : ways) {
-    const std::vector<Prediction> of_one = predictions(way, noise, horizons);
-    const std::vector<Prediction> of_other = predictions(way, other, horizons);
-    for (std::size_t k = 0; k < of_one.size(); ++k) {
-      if (of_one[k].kind != NoiseOf::position) continue;
-      const double horizon = of_one[k].horizon_s;
-      const double share = horizon > 0 ? std::min(1.0, horizons.every_s / horizon) : 1;
-      gains[horizon] += share * (log_density(of_other[k]) - log_density(of_one[k]));
-    }
-  }
-  double most = 0;
-  for (const auto& [horizon, gain] : gains) most = std::max(most, gain);
-  return most;
+  return gain_of(all_predictions(ways, noise, horizons), all_predictions(ways, other, horizons),
+                 horizons.every_s);
 }
 
 }  // namespace foucault::calibration

@@ -20,8 +20,8 @@ struct NoiseModel {
   double wheel = 1;         ///< of the sigma of the wheels' speed
 };
 
-/// No road is smooth and no wheel round: sigmas of slip and of wheels' speed are at least this, beside
-/// what is learned [m/s].
+/// No road is smooth and no wheel round: sigmas of slip and of wheels' speed are at least this,
+/// beside what is learned [m/s].
 constexpr double kLeastWheelNoise = 0.01;
 
 /// A number of a model that can be learned, by its logarithm.
