@@ -331,7 +331,7 @@ NoiseAxes axes_of(const std::vector<RecordedWay>& ways) {
   namespace axis = noise_axis;
   std::map<NoiseOf, int> measured;
   for (const RecordedWay& way : ways)
-    for (const WayNode& node : way)
+    for (const WayNode& node : way.nodes)
       for (const WayMeasurement& z : node.measured) ++measured[z.kind];
   NoiseAxes axes;
   axes.told = {axis::accel_white, axis::gyro_white, axis::accel_bias, axis::gyro_bias};

@@ -47,11 +47,20 @@ class WayFilter {
       predict(node);
   }
 
+  void leap(const WayLeg& leg) {
+    carry(leg.motion, leg.decay, leg.input, leg.dt);
+    P_.topLeftCorner<kMotion, kMotion>() += gyro_power_ * leg.by_gyro + accel_power_ * leg.by_accel;
+    P_.topLeftCorner<kNode, kNode>() += noise_.imu.gyro_bias_power() * leg.by_gyro_bias +
+                                        noise_.imu.accel_bias_power() * leg.by_accel_bias;
+  }
+
   /// Of what is to be measured now.
   Prediction meet(const WayMeasurement& z, double horizon_s, int64_t t_ns) const {
     const Eigen::Matrix<double, kSize, 3> H = columns(z);
-    Prediction p{z.kind,    z.rows, z.r - H.transpose() * mean_, H.transpose() * P_ * H,
-                 horizon_s, t_ns};
+    const Eigen::Matrix<double, kSize, 3> Ph = P_.lazyProduct(H);
+    Prediction p{
+        z.kind,    z.rows, z.r - H.transpose().lazyProduct(mean_), H.transpose().lazyProduct(Ph),
+        horizon_s, t_ns};
     for (int row = 0; row < 3; ++row) p.covariance(row, row) += row < z.rows ? variance(z, row) : 1;
     return p;
   }
@@ -92,26 +101,35 @@ class WayFilter {
   }
 
   void predict(const WayNode& node) {
-    const double fix_decay = std::exp(-node.dt / noise_.fix_tau_s);
-    Eigen::Matrix<double, kSensor, 1> decay;
-    decay << node.decay, Eigen::Vector3d::Constant(fix_decay);
-    const Eigen::Matrix<double, kMotion, kSize> carried = node.motion * P_.topRows<kNode>();
-    P_.topLeftCorner<kMotion, kMotion>().noalias() =
-        carried.leftCols<kNode>() * node.motion.transpose();
+    state::NodeVector input = state::NodeVector::Zero();
+    input.head<kMotion>() = node.input;
+    carry(node.motion, node.decay, input, node.dt);
     P_.topLeftCorner<kMotion, kMotion>() +=
         gyro_power_ * node.by_gyro + accel_power_ * node.by_accel;
-    P_.topRightCorner<kMotion, kSensor>() = carried.rightCols<kSensor>() * decay.asDiagonal();
-    P_.bottomLeftCorner<kSensor, kMotion>() = P_.topRightCorner<kMotion, kSensor>().transpose();
-    P_.bottomRightCorner<kSensor, kSensor>().array() *= (decay * decay.transpose()).array();
     state::part(P_.diagonal(), state::block::gyro_bias).array() +=
         noise_.imu.gyro_bias_power() * node.dt;
     state::part(P_.diagonal(), state::block::accel_bias).array() +=
         noise_.imu.accel_bias_power() * node.dt;
+    if (node.covariance) P_.topLeftCorner<kNode, kNode>() += *node.covariance;
+  }
+
+  /// By the transition, and what of the errors of fixes lasts; without the noise of the IMU.
+  void carry(const state::RowsByNode<kMotion>& motion, const state::BiasVector& bias_decay,
+             const state::NodeVector& input, double dt) {
+    const double fix_decay = std::exp(-dt / noise_.fix_tau_s);
+    Eigen::Matrix<double, kSensor, 1> decay;
+    decay << bias_decay, Eigen::Vector3d::Constant(fix_decay);
+    const Eigen::Matrix<double, kMotion, kSize> carried = motion.lazyProduct(P_.topRows<kNode>());
+    P_.topLeftCorner<kMotion, kMotion>() =
+        carried.leftCols<kNode>().lazyProduct(motion.transpose());
+    P_.topRightCorner<kMotion, kSensor>() = carried.rightCols<kSensor>() * decay.asDiagonal();
+    P_.bottomLeftCorner<kSensor, kMotion>() = P_.topRightCorner<kMotion, kSensor>().transpose();
+    P_.bottomRightCorner<kSensor, kSensor>().array() *= (decay * decay.transpose()).array();
     P_.diagonal().tail<3>().array() +=
         std::pow(noise_.fix_coloured, 2) * (1 - fix_decay * fix_decay);
-    if (node.covariance) P_.topLeftCorner<kNode, kNode>() += *node.covariance;
-    const state::MotionVector motion = node.motion * mean_.head<kNode>() + node.input;
-    mean_ << motion, decay.cwiseProduct(mean_.tail<kSensor>());
+    const state::MotionVector moved = motion.lazyProduct(mean_.head<kNode>());
+    mean_ << moved, decay.cwiseProduct(mean_.tail<kSensor>());
+    mean_.head<kNode>() += input;
   }
 
   const NoiseModel& noise_;
@@ -122,16 +140,17 @@ class WayFilter {
 
 bool is_fix(NoiseOf kind) { return kind == NoiseOf::position || kind == NoiseOf::velocity; }
 
-/// From the node `first` on without fixes. The next fix may come late by a third.
-void look_ahead(const RecordedWay& way, std::size_t first, WayFilter filter,
+/// From the end of a leg on without fixes. The next fix may come late by a third.
+void look_ahead(const RecordedWay& way, std::size_t leg, WayFilter filter,
                 const std::vector<double>& horizons, std::vector<Prediction>& out) {
   constexpr double kLate = 1.3;
+  const int64_t start_ns = way.nodes[way.legs[leg].to].t_ns;
   auto next = horizons.begin();
-  for (std::size_t i = first + 1; i < way.size() && next != horizons.end(); ++i) {
-    const WayNode& node = way[i];
+  while (++leg < way.legs.size() && next != horizons.end()) {
+    const WayNode& node = way.nodes[way.legs[leg].to];
     if (node.begins || node.covariance) return;
-    filter.come(node);
-    const double since = seconds_between(way[first].t_ns, node.t_ns);
+    filter.leap(way.legs[leg]);
+    const double since = seconds_between(start_ns, node.t_ns);
     for (const WayMeasurement& z : node.measured) {
       if (z.kind == NoiseOf::position && next != horizons.end() && since >= *next) {
         if (since < kLate * *next) out.push_back(filter.meet(z, *next, node.t_ns));
@@ -150,8 +169,9 @@ std::vector<Prediction> predictions(const RecordedWay& way, const NoiseModel& no
   std::vector<Prediction> out;
   WayFilter filter(noise);
   int64_t begin_ns = 0, start_ns = 0;
-  for (std::size_t i = 0; i < way.size(); ++i) {
-    const WayNode& node = way[i];
+  std::size_t leg = 0;  // that ends here or later
+  for (std::size_t i = 0; i < way.nodes.size(); ++i) {
+    const WayNode& node = way.nodes[i];
     if (node.begins) begin_ns = start_ns = node.t_ns;
     filter.come(node);
     const bool counts = seconds_between(begin_ns, node.t_ns) > kSettling;
@@ -162,9 +182,12 @@ std::vector<Prediction> predictions(const RecordedWay& way, const NoiseModel& no
       filter.correct(z);
       fixed |= z.kind == NoiseOf::position;
     }
-    if (!counts || !fixed || seconds_between(start_ns, node.t_ns) < horizons.every_s) continue;
+    while (leg < way.legs.size() && way.legs[leg].to < i) ++leg;
+    const bool ends = leg < way.legs.size() && way.legs[leg].to == i;
+    const bool due = seconds_between(start_ns, node.t_ns) >= horizons.every_s;
+    if (!counts || !fixed || !ends || !due) continue;
     start_ns = node.t_ns;
-    look_ahead(way, i, filter, horizons.lengths_s, out);
+    look_ahead(way, leg, filter, horizons.lengths_s, out);
   }
   return out;
 }

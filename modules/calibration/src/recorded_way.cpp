@@ -155,21 +155,22 @@ void WayRecorder::hold() {
 
 RecordedWay folded(const UnfoldedWay& way, const state::SlowVector& slow) {
   RecordedWay out;
-  out.reserve(way.size());
+  out.nodes.reserve(way.size());
   for (const UnfoldedNode& unfolded : way) {
-    WayNode& node = out.emplace_back(unfolded.node);
+    WayNode& node = out.nodes.emplace_back(unfolded.node);
     node.motion = state::node_columns(unfolded.motion);
     node.input = unfolded.motion.rightCols(slow.size()) * (slow - unfolded.slow);
     for (const UnfoldedNode::Measured& measured : unfolded.measured)
       if (measured.z.r.size() <= 3) node.measured.push_back(folded(measured, slow));
   }
+  out.legs = legs_of(out.nodes);
   return out;
 }
 
 Eigen::Vector3d told_sigma(const RecordedWay& way, NoiseOf kind) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   int count = 0;
-  for (const WayNode& node : way) {
+  for (const WayNode& node : way.nodes) {
     for (const WayMeasurement& z : node.measured) {
       if (z.kind != kind) continue;
       sum += z.told_sigma.cwiseAbs2();
@@ -181,7 +182,7 @@ Eigen::Vector3d told_sigma(const RecordedWay& way, NoiseOf kind) {
 
 double length_s(const RecordedWay& way) {
   double sum = 0;
-  for (const WayNode& node : way)
+  for (const WayNode& node : way.nodes)
     if (!node.begins) sum += node.dt;
   return sum;
 }

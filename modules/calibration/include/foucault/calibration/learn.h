@@ -15,7 +15,7 @@ struct LearnOptions {
   /// fix to fix can be wrong over a minute. All horizons, and that of the next fix, count alike.
   std::vector<double> horizons_s = {5, 15, 30, 60};
   /// Of predictions, at least 5 s and at most 60 s apart; a quarter of them until the top is near.
-  int starts = 60;
+  int starts = 120;
   bool profile = false;  ///< of each axis
   /// Also with a part of the errors of positions that lasts (Gauss-Markov).
   bool lasting = false;

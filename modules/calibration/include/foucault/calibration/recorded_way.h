@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -45,7 +46,31 @@ struct WayNode {
   std::vector<WayMeasurement> measured;  ///< in the order of use
 };
 
-using RecordedWay = std::vector<WayNode>;
+/// From a node to a later one as one step, for those who meet none of the fixes between: with what
+/// moved the nominal state there in the input, and biases that vary driving all they act on.
+struct WayLeg {
+  std::size_t to = 0;  ///< node
+  double dt = 0;       ///< [s]
+  state::RowsByNode<state::MotionVector::RowsAtCompileTime> motion =
+      state::RowsByNode<state::MotionVector::RowsAtCompileTime>::Identity();
+  state::BiasVector decay = state::BiasVector::Ones();
+  state::NodeVector input = state::NodeVector::Zero();
+  /// Covariance that a unit of white noise drives, of sensors and of their biases
+  state::MotionMatrix by_gyro = state::MotionMatrix::Zero(), by_accel = state::MotionMatrix::Zero();
+  state::NodeMatrix by_gyro_bias = state::NodeMatrix::Zero(),
+                    by_accel_bias = state::NodeMatrix::Zero();
+};
+
+struct RecordedWay {
+  std::vector<WayNode> nodes;
+  std::vector<WayLeg> legs;  ///< one after the other, the first to where the way begins
+
+  bool empty() const { return nodes.empty(); }
+};
+
+/// Legs end at measurements that are no fixes, at a fix every second, and where covariance is added
+/// or nothing comes from before.
+std::vector<WayLeg> legs_of(const std::vector<WayNode>& nodes);
 
 /// What the recorder leaves, with slow blocks as they were on the way.
 struct UnfoldedNode {
