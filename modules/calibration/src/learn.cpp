@@ -88,6 +88,12 @@ class Landscape {
     return std::isfinite(sum) ? sum : -std::numeric_limits<double>::infinity();
   }
 
+  /// Of what is learned. Horizons share their time, so that all of them tell what one does.
+  Eigen::MatrixXd covariance(const Eigen::MatrixXd& information) const {
+    const Eigen::MatrixXd prior = prior_ * Eigen::MatrixXd::Identity(size(), size());
+    return (prior + (information - prior) / static_cast<double>(weights_.size())).inverse();
+  }
+
   struct Slope {
     Eigen::VectorXd gradient;
     Eigen::MatrixXd information;
@@ -269,7 +275,7 @@ Learned found_at(Landscape& landscape, const Place& best, const NoiseModel& told
                  const LearnOptions& options) {
   Learned out;
   out.noise = landscape.at(best.x);
-  out.axes = learned_axes(options, told, out.noise, best.information.inverse());
+  out.axes = learned_axes(options, told, out.noise, landscape.covariance(best.information));
   if (options.profile) add_profiles(landscape, best, out.axes);
   out.passes = landscape.passes();
   return out;

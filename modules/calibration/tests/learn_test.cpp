@@ -60,8 +60,8 @@ TEST(Learn, FindsTheNoiseFromWrongDataSheets) {
   }
 }
 
-/// What differs is within its sigmas: over ten trips the mean square of errors in sigmas is that of
-/// independent predictions within a factor of three.
+/// What differs is within its sigmas: over ten trips the mean square of errors in sigmas is one,
+/// within a factor of three.
 TEST(Learn, SaysHowSureItIs) {
   double square = 0, bias = 0;
   int count = 0;
@@ -77,6 +77,7 @@ TEST(Learn, SaysHowSureItIs) {
     }
   }
   EXPECT_LT(square / count, 3);
+  EXPECT_GT(square / count, 1.0 / 3);
   EXPECT_NEAR(bias / count, 0, 0.15);
 }
 
