@@ -292,6 +292,31 @@ TEST_F(Trip, ARunThatCannotBeBelievedSaysSo) {
   EXPECT_THAT(quiet.err, HasSubstr("warning: not trustworthy: innovations are"));
 }
 
+TEST_F(Trip, ANoiseThatNobodyToldIsLearnedAndKept) {
+  const Outcome outcome = foucault({"run", log_, "--method", "ekf", "--set", "imu.preset=auto",
+                                    "--no-report", "--out", folder_ / "auto"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("nearest preset"));
+  EXPECT_THAT(outcome.err, testing::Not(HasSubstr("as configured")));
+  const std::string config = folder_.text("auto/config.yaml");
+  EXPECT_THAT(config, testing::Not(HasSubstr("preset: auto")));
+  const std::string key = "arw_deg_sqrt_h: ";
+  const double learned = std::stod(config.substr(config.find(key) + key.size()));
+  EXPECT_GT(learned, 0.15 / 3);  // a minute and a half of fixes: a factor of two is one sigma
+  EXPECT_LT(learned, 0.15 * 3);
+}
+
+TEST_F(Trip, AutoIsNoNoiseByItself) {
+  const Outcome told = foucault({"run", log_, "--set", "imu.preset=auto", "--set",
+                                 "imu.arw_deg_sqrt_h=0.1", "--out", folder_ / "run"});
+  EXPECT_EQ(told.exit_code, 2);
+  EXPECT_THAT(told.err, HasSubstr("imu.arw_deg_sqrt_h"));
+  const Outcome simulated =
+      foucault({"simulate", "--imu", "auto", "--out", folder_ / "auto.rawlog"});
+  EXPECT_EQ(simulated.exit_code, 2);
+  EXPECT_THAT(simulated.err, HasSubstr("imu.preset"));
+}
+
 TEST(Demo, LeavesRecordingsASolutionTheTablesAndTheirReports) {
   const TestFolder folder;
   const Outcome demo = foucault({"demo", "--out", folder / "demo"});
