@@ -367,6 +367,17 @@ TEST_F(Trip, ANoiseThatNobodyToldIsLearnedAndKept) {
   EXPECT_LT(learned, 0.15 * 3);
 }
 
+TEST(Auto, WhatIsTooShortToTellItsNoiseIsTakenAsCoarse) {
+  const TestFolder folder;
+  const std::string log = folder / "short.rawlog";
+  ASSERT_EQ(foucault({"simulate", "--duration", "70", "--seed", "1", "--out", log}).exit_code, 0);
+  const Outcome outcome = foucault({"run", log, "--method", "ekf", "--set", "imu.preset=auto",
+                                    "--no-report", "--out", folder / "run"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("imu.preset=consumer instead of auto"));
+  EXPECT_THAT(folder.text("run/config.yaml"), HasSubstr("consumer"));
+}
+
 TEST_F(Trip, AutoIsNoNoiseByItself) {
   const Outcome told = foucault({"run", log_, "--set", "imu.preset=auto", "--set",
                                  "imu.arw_deg_sqrt_h=0.1", "--out", folder_ / "run"});

@@ -206,13 +206,16 @@ Survey Surveyor::survey(const std::string& log, Settings settings) {
     const bool moves = rest && std::abs(found.time_offset_s + *rest) < kMost;
     const bool learns = questions > 0 && !watcher->way.empty() && (pass > 0 || !moves);
     if (learns) {
-      --questions;
       const calibration::RecordedWay way = calibration::folded(watcher->way, watcher->last->slow);
-      LearnedNoise noise = untold ? find_noise(way, watcher->last->bias, found.noise, settings)
-                                  : learn_noise(log, way, settings);
-      noise.apply_to(settings);
-      if (found.noise) noise.sigma_scale *= found.noise->sigma_scale;
-      found.noise = std::move(noise);
+      std::optional<LearnedNoise> noise =
+          untold ? find_noise(way, watcher->last->bias, found.noise, settings)
+                 : learn_noise(log, way, settings);
+      questions = noise ? questions - 1 : 0;
+      if (noise) {
+        noise->apply_to(settings);
+        if (found.noise) noise->sigma_scale *= found.noise->sigma_scale;
+        found.noise = std::move(noise);
+      }
     }
     if (moves) {
       found.time_offset_s += *rest;
@@ -253,10 +256,12 @@ LearnedNoise Surveyor::learn_noise(const std::string& log, const calibration::Re
 }
 
 /// From the nearest preset the first time (there is none `before`), then from what was learned.
-/// Turn-on values are what presets say, or as large as the biases that the filter came to.
-LearnedNoise Surveyor::find_noise(const calibration::RecordedWay& way, const state::ImuBias& bias,
-                                  const std::optional<LearnedNoise>& before,
-                                  const Settings& settings) {
+/// Turn-on values are what presets say, or as large as the biases that the filter came to. None if
+/// the way tells nothing.
+std::optional<LearnedNoise> Surveyor::find_noise(const calibration::RecordedWay& way,
+                                                 const state::ImuBias& bias,
+                                                 const std::optional<LearnedNoise>& before,
+                                                 const Settings& settings) {
   const std::vector<calibration::RecordedWay> ways{way};
   const imu::ImuNoise taken = settings.imu.noise();
   const std::vector<calibration::NoiseModel> presets = models_of_presets(taken.bias_tau);
@@ -269,6 +274,8 @@ LearnedNoise Surveyor::find_noise(const calibration::RecordedWay& way, const sta
   const calibration::Learned all =
       calibration::learn(ways, aids.noise, {calibration::axes_of(ways).all()});
   console_.clear_progress();
+  const auto is_told = [](const calibration::LearnedAxis& one) { return one.observable; };
+  if (std::none_of(all.axes.begin(), all.axes.end(), is_told)) return std::nullopt;
   LearnedNoise noise = noise_of(all.noise, way);
   noise.imu.gyro_turn_on_sigma = turn_on(noise.imu.gyro_turn_on_sigma, bias.gyro);
   noise.imu.accel_turn_on_sigma = turn_on(noise.imu.accel_turn_on_sigma, bias.accel);
@@ -299,7 +306,7 @@ Settings Surveyor::complete(const std::string& log, const Settings& settings) {
   if (is_untold(completed)) {
     completed.imu = coarse(completed.imu);
     console_.warn(
-        fmt::format("{}: less than a minute of it tells its noise; imu.preset={} instead of auto",
+        fmt::format("{}: too short to tell the noise of its IMU; imu.preset={} instead of auto",
                     log, completed.imu.preset));
   }
   return completed;

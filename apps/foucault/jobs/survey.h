@@ -36,7 +36,7 @@ struct Survey {
 calibration::RecordedWay recorded_way(const std::string& log, const Settings& settings,
                                       Console& console);
 
-/// What of imu and gnss is random, in the names of the settings; after complete().
+/// What of imu and gnss is random, in the names of the settings. Precondition: imu.* has values.
 std::string noise_text(const Settings& settings);
 
 /// As the settings have it. `way`: on which it was learned.
@@ -63,8 +63,10 @@ class Surveyor {
   Survey survey(const std::string& log, Settings settings);
   LearnedNoise learn_noise(const std::string& log, const calibration::RecordedWay& way,
                            const Settings& settings);
-  LearnedNoise find_noise(const calibration::RecordedWay& way, const state::ImuBias& bias,
-                          const std::optional<LearnedNoise>& before, const Settings& settings);
+  std::optional<LearnedNoise> find_noise(const calibration::RecordedWay& way,
+                                         const state::ImuBias& bias,
+                                         const std::optional<LearnedNoise>& before,
+                                         const Settings& settings);
 
   Console& console_;
   std::map<std::string, Survey> seen_;
