@@ -292,6 +292,103 @@ TEST_F(Trip, ARunThatCannotBeBelievedSaysSo) {
   EXPECT_THAT(quiet.err, HasSubstr("warning: not trustworthy: innovations are"));
 }
 
+/// Ten minutes: white noise to a few hundredths (the fits' own 2 % and one sigma more), and nothing
+/// of biases that wander for an hour.
+TEST(Allan, TellsWhatTheLengthShowsHoweverSamplesAreRead) {
+  const TestFolder folder;
+  const std::string log = folder / "bench.rawlog";
+  ASSERT_EQ(foucault({"simulate", "--imu", "ADIS16465", "--duration", "600", "--seed", "3", "--set",
+                      "scenario.name=static", "--set", "scenario.imu_rate_hz=50", "--set",
+                      "scenario.reference_rate_hz=0", "--out", log})
+                .exit_code,
+            0);
+  const Outcome outcome = foucault({"allan", log, "--out", folder / "noise"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("not told by this recording"));
+  EXPECT_THAT(folder.text("noise/report/index.html"), HasSubstr("Allan deviation"));
+  const json m = json::parse(folder.text("noise/metrics.json"));
+  EXPECT_EQ(m["rests"], 1);
+  EXPECT_NEAR(m["rest_s"].get<double>(), 600, 6);
+  EXPECT_NEAR(m["gyroscope"]["all"]["arw_deg_sqrt_h"]["value"].get<double>(), 0.15, 0.05 * 0.15);
+  EXPECT_NEAR(m["accelerometer"]["all"]["vrw_m_s_sqrt_h"]["value"].get<double>(), 0.012,
+              0.05 * 0.012);
+  EXPECT_TRUE(m["gyroscope"]["all"]["bias_instability_deg_h"].is_null());
+  EXPECT_TRUE(m["gyroscope"]["all"]["gyro_bias_deg_h"].is_null());
+  EXPECT_TRUE(m["accelerometer"]["vibration"]["at_rest"].empty());
+  ASSERT_EQ(foucault({"allan", log, "--no-report", "--set", "imu.samples=instantaneous", "--out",
+                      folder / "instantaneous"})
+                .exit_code,
+            0);
+  EXPECT_EQ(folder.text("noise/allan.csv"), folder.text("instantaneous/allan.csv"));
+}
+
+TEST(Allan, ALogThatNeverRestsIsRefusedInOneLine) {
+  const TestFolder folder;
+  const std::string log = folder / "motorway.rawlog";
+  ASSERT_EQ(foucault({"simulate", "--duration", "120", "--set", "scenario.name=motorway", "--set",
+                      "scenario.skip_s=80", "--set", "scenario.imu_rate_hz=50", "--out", log})
+                .exit_code,
+            0);
+  const Outcome outcome = foucault({"allan", log, "--out", folder / "noise"});
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.err, HasSubstr("nowhere at rest"));
+  EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+  EXPECT_FALSE(fs::exists(folder / "noise"));
+}
+
+/// A line of 25 Hz that grows with the speed.
+TEST(Allan, NamesWhatShakesInMotion) {
+  const TestFolder folder;
+  const std::string log = folder / "car.rawlog";
+  ASSERT_EQ(foucault({"simulate", "--imu", "ADIS16465", "--duration", "200", "--set",
+                      "scenario.vibration_hz=25.4", "--set", "scenario.vibration_m_s2=0.5", "--set",
+                      "scenario.vibration_growth=1", "--out", log})
+                .exit_code,
+            0);
+  const Outcome outcome = foucault({"allan", log, "--no-report", "--out", folder / "noise"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("Accelerometer shakes in motion at 25.4"));
+  const json m = json::parse(folder.text("noise/metrics.json"));
+  EXPECT_NEAR(m["accelerometer"]["vibration"]["in_motion"][0]["frequency_hz"].get<double>(), 25.4,
+              0.1);
+}
+
+TEST_F(Trip, ANoiseThatNobodyToldIsLearnedAndKept) {
+  const Outcome outcome = foucault({"run", log_, "--method", "ekf", "--set", "imu.preset=auto",
+                                    "--no-report", "--out", folder_ / "auto"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("nearest preset"));
+  EXPECT_THAT(outcome.err, testing::Not(HasSubstr("as configured")));
+  const std::string config = folder_.text("auto/config.yaml");
+  EXPECT_THAT(config, testing::Not(HasSubstr("preset: auto")));
+  const std::string key = "arw_deg_sqrt_h: ";
+  const double learned = std::stod(config.substr(config.find(key) + key.size()));
+  EXPECT_GT(learned, 0.15 / 3);  // a minute and a half of fixes: a factor of two is one sigma
+  EXPECT_LT(learned, 0.15 * 3);
+}
+
+TEST(Auto, WhatIsTooShortToTellItsNoiseIsTakenAsCoarse) {
+  const TestFolder folder;
+  const std::string log = folder / "short.rawlog";
+  ASSERT_EQ(foucault({"simulate", "--duration", "70", "--seed", "1", "--out", log}).exit_code, 0);
+  const Outcome outcome = foucault({"run", log, "--method", "ekf", "--set", "imu.preset=auto",
+                                    "--no-report", "--out", folder / "run"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("imu.preset=consumer instead of auto"));
+  EXPECT_THAT(folder.text("run/config.yaml"), HasSubstr("consumer"));
+}
+
+TEST_F(Trip, AutoIsNoNoiseByItself) {
+  const Outcome told = foucault({"run", log_, "--set", "imu.preset=auto", "--set",
+                                 "imu.arw_deg_sqrt_h=0.1", "--out", folder_ / "run"});
+  EXPECT_EQ(told.exit_code, 2);
+  EXPECT_THAT(told.err, HasSubstr("imu.arw_deg_sqrt_h"));
+  const Outcome simulated =
+      foucault({"simulate", "--imu", "auto", "--out", folder_ / "auto.rawlog"});
+  EXPECT_EQ(simulated.exit_code, 2);
+  EXPECT_THAT(simulated.err, HasSubstr("imu.preset"));
+}
+
 TEST(Demo, LeavesRecordingsASolutionTheTablesAndTheirReports) {
   const TestFolder folder;
   const Outcome demo = foucault({"demo", "--out", folder / "demo"});

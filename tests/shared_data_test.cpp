@@ -191,6 +191,22 @@ TEST_F(SharedData, TimeOffsetsAreFound) {
   EXPECT_NEAR(found_time_offset(), 0, 0.02);
 }
 
+/// 33 s at 50 Hz: white noise, and nothing else.
+TEST_F(SharedData, HalfAMinuteAtRestTellsWhiteNoiseOnly) {
+  import_with("vn310_static_tckf", "vn310_static");
+  const Outcome outcome = foucault({"allan", log(), "--out", folder_ / "allan"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const json m = json::parse(folder_.text("allan/metrics.json"));
+  for (const auto& [sensor, white] :
+       {std::pair{"gyroscope", "arw_deg_sqrt_h"}, std::pair{"accelerometer", "vrw_m_s_sqrt_h"}}) {
+    for (const auto& [key, value] : m[sensor]["all"].items()) {
+      const bool told = key == white || key.find("fitted") == 0;
+      EXPECT_EQ(value.is_null(), !told) << sensor << ' ' << key;
+    }
+  }
+  EXPECT_EQ(occurrences("not told by this recording", outcome.out), 6) << outcome.out;
+}
+
 TEST_F(SharedData, WithoutMotionTheHeadingMustBeGiven) {
   import_with("vn310_static_lckf", "vn310_static");
   const Outcome without = foucault({"run", log(), "--out", folder_ / "run"});

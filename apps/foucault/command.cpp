@@ -15,6 +15,7 @@ const std::vector<Command>& commands() {
       {"evaluate", "withhold fixes, measure the drift of every method", declare_evaluate},
       {"tune", "search the parameters with the least drift", declare_tune},
       {"learn", "find the noise of IMU, fixes and wheels in recordings", declare_learn},
+      {"allan", "noise of an IMU at rest, and what shakes it", declare_allan},
       {"lab", "study the models on exact motion", declare_lab},
       {"compare", "show two runs or more together, with differences", declare_compare},
       {"report", "draw a report again from its numbers", declare_report},

@@ -41,6 +41,7 @@ std::function<void(Call&)> declare_run(CLI::App& app);
 std::function<void(Call&)> declare_evaluate(CLI::App& app);
 std::function<void(Call&)> declare_tune(CLI::App& app);
 std::function<void(Call&)> declare_learn(CLI::App& app);
+std::function<void(Call&)> declare_allan(CLI::App& app);
 std::function<void(Call&)> declare_lab(CLI::App& app);
 std::function<void(Call&)> declare_report(CLI::App& app);
 

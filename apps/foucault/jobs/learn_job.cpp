@@ -77,11 +77,15 @@ std::vector<LearnedValue> values_of(const Learned& learned, const calibration::R
   return values;
 }
 
-calibration::RecordedWay way_of(const std::string& log, const Settings& told, Console& console) {
-  Settings settings = told;
+/// With what a survey of it completes.
+Settings completed_for(const std::string& log, Settings settings, Console& console) {
   settings.calibrate.noise = "off";
-  settings = Surveyor(console).complete(log, settings_for(log, settings));
-  calibration::RecordedWay way = recorded_way(log, settings, console);
+  return Surveyor(console).complete(log, settings_for(log, settings));
+}
+
+calibration::RecordedWay way_of(const std::string& log, const Settings& completed,
+                                Console& console) {
+  calibration::RecordedWay way = recorded_way(log, completed, console);
   if (way.empty())
     throw DataError(
         fmt::format("'{}': no minute of it could be processed; see `foucault check`", log));
@@ -130,12 +134,17 @@ LearnResult learn(const LearnJob& job, Console& console) {
   OutputDirectory out(job.out);
   LearnResult result;
   std::vector<calibration::RecordedWay> ways;
+  Settings told = settings_for(job.logs.front(), job.settings);
   for (const std::string& log : job.logs) {
-    ways.push_back(way_of(log, job.settings, console));
+    const Settings completed = completed_for(log, job.settings, console);
+    if (told.imu.preset == "auto") {
+      told.imu = completed.imu;
+      told.gnss.sigma_scale = completed.gnss.sigma_scale;
+    }
+    ways.push_back(way_of(log, completed, console));
     result.logs.push_back(std::filesystem::path(log).filename().string());
     result.length_s += length_s(ways.back());
   }
-  const Settings told = settings_for(job.logs.front(), job.settings);
   NoiseModel model;
   model.imu = told.imu.noise();
   calibration::LearnOptions options;

@@ -100,6 +100,9 @@ RunResult run_into(const RunJob& job, const std::filesystem::path& folder, Conso
   if (job.profile) profile.emplace().add(Stage::start, process_cpu_s());
   const ResourceMeter meter;
   Settings settings = Surveyor(console).complete(job.log, settings_for(job.log, job.settings));
+  if (job.settings.imu.preset == "auto" && settings.imu.arw_deg_sqrt_h)  // else it warned
+    console.say(fmt::format("{:<10} {}; nearest preset {}", "noise", noise_text(settings),
+                            settings.imu.preset));
   const std::string config = dump_config(settings);
   const Method& method = find_method(job.method);
 

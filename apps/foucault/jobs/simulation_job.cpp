@@ -44,6 +44,8 @@ SimulationCounts write_simulation(const SimulationSettings& settings, const std:
 
 SimulationCounts write_simulation(const SimulationSettings& settings, const FaultCase& fault,
                                   const std::string& path, Console& console) {
+  if (settings.imu.preset == "auto")
+    throw UsageError("imu.preset: auto is learned from a recording; name the IMU to simulate");
   if (settings.imu.sample_kind() != imu::SampleKind::interval_mean) {
     throw UsageError("imu.samples: simulated samples are means over intervals; use interval_mean");
   }

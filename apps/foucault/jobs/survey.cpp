@@ -81,14 +81,73 @@ bool uses(const Watcher& watcher, const char* aid) {
   return count != watcher.used.end() && count->second >= kTold;
 }
 
+/// Nobody said what the IMU is like.
+bool is_untold(const Settings& settings) { return settings.imu.preset == "auto"; }
+
+/// Throws UsageError if something of what is to be learned was told all the same.
+void expect_untold(const imu::ImuOptions& told) {
+  const std::pair<const char*, const std::optional<double>&> learned[]{
+      {"arw_deg_sqrt_h", told.arw_deg_sqrt_h},
+      {"vrw_m_s_sqrt_h", told.vrw_m_s_sqrt_h},
+      {"gyro_bias_deg_h", told.gyro_bias_deg_h},
+      {"accel_bias_mgal", told.accel_bias_mgal}};
+  for (const auto& [key, value] : learned) {
+    if (value)
+      throw UsageError(fmt::format(
+          "imu.{}: imu.preset auto learns it; leave it out, or name a preset beside it", key));
+  }
+}
+
+imu::ImuOptions coarse(imu::ImuOptions options) {
+  options.preset = "consumer";
+  return options;
+}
+
 bool leaves_open(const Settings& settings) {
   const state::CalibrateOptions& c = settings.calibrate;
   const measurement::AidOptions& aids = settings.aids;
+  if (is_untold(settings)) return true;
   if (c.mode == "none") return false;
   const bool wheels = aids.uses(aids.nonholonomic) || aids.uses(aids.wheel_speed);
   return c.time_offset != "off" || c.noise != "off" ||
          (wheels && (c.mounting == "auto" || c.wheel_scale == "auto" ||
                      c.wheel_lever_arm == "auto" || c.cornering_compliance == "auto"));
+}
+
+std::vector<calibration::NoiseModel> models_of_presets(double bias_tau) {
+  std::vector<calibration::NoiseModel> models;
+  for (const std::string& name : imu::imu_preset_names()) {
+    models.emplace_back().imu = imu::imu_preset(name);
+    models.back().imu.bias_tau = bias_tau;
+  }
+  return models;
+}
+
+/// What nobody tells, the rest as it was told.
+calibration::Learned learn_aids(const std::vector<calibration::RecordedWay>& ways,
+                                const calibration::NoiseModel& told) {
+  return calibration::learn(ways, told, {calibration::axes_of(ways).of_aids});
+}
+
+calibration::Learned learn_all(const std::vector<calibration::RecordedWay>& ways,
+                               const calibration::NoiseModel& told) {
+  calibration::LearnOptions options{calibration::axes_of(ways).all()};
+  options.lasting = true;
+  return calibration::learn(ways, told, options);
+}
+
+/// At least what was found.
+double turn_on(double usual, const Eigen::Vector3d& bias) {
+  return std::max(usual, std::sqrt(bias.squaredNorm() / 3));
+}
+
+}  // namespace
+
+calibration::RecordedWay recorded_way(const std::string& log, const Settings& settings,
+                                      Console& console) {
+  const std::optional<Watcher> watcher = look_through(log, settings, true, console);
+  if (!watcher) return {};
+  return calibration::folded(watcher->way, watcher->last->slow);
 }
 
 std::string noise_text(const Settings& settings) {
@@ -105,15 +164,6 @@ std::string noise_text(const Settings& settings) {
   if (aids.wheel_speed_sigma_m_s)
     text += fmt::format(", wheel_speed_sigma_m_s {:.2g}", *aids.wheel_speed_sigma_m_s);
   return text;
-}
-
-}  // namespace
-
-calibration::RecordedWay recorded_way(const std::string& log, const Settings& settings,
-                                      Console& console) {
-  const std::optional<Watcher> watcher = look_through(log, settings, true, console);
-  if (!watcher) return {};
-  return calibration::folded(watcher->way, watcher->last->slow);
 }
 
 LearnedNoise noise_of(const calibration::NoiseModel& model, const calibration::RecordedWay& way) {
@@ -137,6 +187,7 @@ LearnedNoise noise_of(const calibration::NoiseModel& model, const calibration::R
 
 void LearnedNoise::apply_to(Settings& settings) const {
   settings.imu = settings.imu.with(imu);
+  if (!preset.empty()) settings.imu.preset = preset;
   settings.gnss.sigma_scale *= sigma_scale;
   if (slip_m_s) {
     settings.aids.nonholonomic_sigma_m_s = slip_m_s->x();
@@ -146,16 +197,18 @@ void LearnedNoise::apply_to(Settings& settings) const {
 }
 
 /// The noise is learned once the clocks agree to about what is linear, after the first pass; with
-/// it the log is gone through again.
+/// it the log is gone through again. A noise that nobody told is learned twice.
 Survey Surveyor::survey(const std::string& log, Settings settings) {
-  constexpr int kMostPasses = 4;
+  constexpr int kMostPasses = 5;
   constexpr double kMost = 1;  // [s]; as the key
-  bool asks_noise = settings.calibrate.noise != "off";
+  const bool untold = is_untold(settings);
+  if (untold) settings.imu = coarse(settings.imu);
+  int questions = untold ? 2 : settings.calibrate.noise == "off" ? 0 : 1;
   Survey found;
   found.time_offset_s = settings.calibrate.time_offset_s;
   settings.calibrate = settings.calibrate.resolved({true, true});
   for (int pass = 0; pass < kMostPasses; ++pass) {
-    const std::optional<Watcher> watcher = look_through(log, settings, asks_noise, console_);
+    const std::optional<Watcher> watcher = look_through(log, settings, questions > 0, console_);
     if (!watcher) break;
     found.blocks = evaluation::calibrated_blocks(
         state::as_users_know(*watcher->last, watcher->told), watcher->told.layout);
@@ -164,12 +217,18 @@ Survey Surveyor::survey(const std::string& log, Settings settings) {
     found.carried = {uses(*watcher, "nonholonomic"), uses(*watcher, "wheel_speed")};
     const std::optional<double> rest = rest_of_offset(*watcher, settings.calibrate.layout());
     const bool moves = rest && std::abs(found.time_offset_s + *rest) < kMost;
-    const bool learns = asks_noise && !watcher->way.empty() && (pass > 0 || !moves);
+    const bool learns = questions > 0 && !watcher->way.empty() && (pass > 0 || !moves);
     if (learns) {
-      asks_noise = false;
-      found.noise =
-          learn_noise(log, calibration::folded(watcher->way, watcher->last->slow), settings);
-      found.noise->apply_to(settings);
+      const calibration::RecordedWay way = calibration::folded(watcher->way, watcher->last->slow);
+      std::optional<LearnedNoise> noise =
+          untold ? find_noise(way, watcher->last->bias, found.noise, settings)
+                 : learn_noise(log, way, settings);
+      questions = noise ? questions - 1 : 0;
+      if (noise) {
+        noise->apply_to(settings);
+        if (found.noise) noise->sigma_scale *= found.noise->sigma_scale;
+        found.noise = std::move(noise);
+      }
     }
     if (moves) {
       found.time_offset_s += *rest;
@@ -190,16 +249,14 @@ LearnedNoise Surveyor::learn_noise(const std::string& log, const calibration::Re
   calibration::NoiseModel told;
   told.imu = settings.imu.noise();
   const std::vector<calibration::RecordedWay> ways{way};
-  const calibration::NoiseAxes axes = calibration::axes_of(ways);
   console_.progress("noise", 0);
-  const calibration::Learned aids = calibration::learn(ways, told, {axes.of_aids});
-  calibration::LearnOptions of_all{axes.all()};
-  of_all.lasting = true;
-  const calibration::Learned all = calibration::learn(ways, aids.noise, of_all);
+  const calibration::Learned aids = learn_aids(ways, told);
+  const calibration::Learned all = learn_all(ways, aids.noise);
   console_.clear_progress();
   const double tries = 1 + static_cast<double>(calibration::LearnOptions{}.horizons_s.size());
   const double chance =
-      tries * diagnosis::chi_square_tail(2 * all.gain, static_cast<int>(axes.told.size()));
+      tries * diagnosis::chi_square_tail(2 * all.gain,
+                                         static_cast<int>(calibration::axes_of(ways).told.size()));
   if (settings.calibrate.noise == "auto" && chance > kChance) return noise_of(aids.noise, way);
   const LearnedNoise noise = noise_of(all.noise, way);
   Settings with = settings;
@@ -211,6 +268,31 @@ LearnedNoise Surveyor::learn_noise(const std::string& log, const calibration::Re
   return noise;
 }
 
+/// From the nearest preset the first time (there is none `before`), then from what was learned.
+/// Turn-on values are what presets say, or as large as the biases that the filter came to. None if
+/// the way tells nothing.
+std::optional<LearnedNoise> Surveyor::find_noise(const calibration::RecordedWay& way,
+                                                 const state::ImuBias& bias,
+                                                 const std::optional<LearnedNoise>& before,
+                                                 const Settings& settings) {
+  const std::vector<calibration::RecordedWay> ways{way};
+  const imu::ImuNoise taken = settings.imu.noise();
+  const std::vector<calibration::NoiseModel> presets = models_of_presets(taken.bias_tau);
+  console_.progress("noise", 0);
+  const std::size_t nearest = calibration::most_likely(ways, presets, {});
+  calibration::NoiseModel told = presets[nearest];
+  if (before) told.imu = taken;
+  const calibration::Learned all = learn_all(ways, learn_aids(ways, told).noise);
+  console_.clear_progress();
+  const auto is_told = [](const calibration::LearnedAxis& one) { return one.observable; };
+  if (std::none_of(all.axes.begin(), all.axes.end(), is_told)) return std::nullopt;
+  LearnedNoise noise = noise_of(all.noise, way);
+  noise.imu.gyro_turn_on_sigma = turn_on(noise.imu.gyro_turn_on_sigma, bias.gyro);
+  noise.imu.accel_turn_on_sigma = turn_on(noise.imu.accel_turn_on_sigma, bias.accel);
+  noise.preset = imu::imu_preset_names()[nearest];
+  return noise;
+}
+
 const Survey* Surveyor::found(const std::string& log) const {
   const auto found = seen_.find(log);
   return found == seen_.end() ? nullptr : &found->second;
@@ -218,6 +300,7 @@ const Survey* Surveyor::found(const std::string& log) const {
 
 Settings Surveyor::complete(const std::string& log, const Settings& settings) {
   Settings completed = settings;
+  if (is_untold(settings)) expect_untold(settings.imu);
   if (!leaves_open(settings)) {
     completed.calibrate = settings.calibrate.resolved({});
     return completed;
@@ -229,6 +312,12 @@ Settings Surveyor::complete(const std::string& log, const Settings& settings) {
   if (found->second.noise) found->second.noise->apply_to(completed);
   if (settings.calibrate.time_offset != "off") {
     completed.calibrate.time_offset_s = completed.rawlog.fix_delay_s = found->second.time_offset_s;
+  }
+  if (is_untold(completed)) {
+    completed.imu = coarse(completed.imu);
+    console_.warn(
+        fmt::format("{}: too short to tell the noise of its IMU; imu.preset={} instead of auto",
+                    log, completed.imu.preset));
   }
   return completed;
 }

@@ -17,6 +17,7 @@ struct LearnedNoise {
   double sigma_scale = 1;                   ///< factor on gnss.sigma_scale
   std::optional<Eigen::Vector2d> slip_m_s;  ///< to the right, downward; if wheels were assumed
   std::optional<double> wheel_m_s;
+  std::string preset;  ///< that is nearest, where none was told
 
   void apply_to(Settings& settings) const;
 };
@@ -35,6 +36,9 @@ struct Survey {
 calibration::RecordedWay recorded_way(const std::string& log, const Settings& settings,
                                       Console& console);
 
+/// What of imu and gnss is random, in the names of the settings. Precondition: imu.* has values.
+std::string noise_text(const Settings& settings);
+
 /// As the settings have it. `way`: on which it was learned.
 LearnedNoise noise_of(const calibration::NoiseModel& model, const calibration::RecordedWay& way);
 
@@ -42,12 +46,15 @@ LearnedNoise noise_of(const calibration::NoiseModel& model, const calibration::R
 /// offset): a filter with all that may be estimated goes through the log; what it does not come to
 /// use is not estimated afterwards. An estimate of a time offset is of the first order: fixes are
 /// moved by it and it is made again, until what is left is small. What the filter cannot process
-/// changes nothing.
+/// changes nothing. With imu.preset `auto` the noise is learned on the way of a filter that was
+/// told a coarse one, from the preset that makes that way the most likely, and once more on the way
+/// of one that knows it.
 class Surveyor {
  public:
   explicit Surveyor(Console& console) : console_(console) {}
 
-  /// Settings without `auto` among calibrate.*, from settings_for(). A log is looked through once.
+  /// Settings without `auto` among calibrate.* and as imu.preset, from settings_for(). A log is
+  /// looked through once.
   Settings complete(const std::string& log, const Settings& settings);
   /// What it found for that; null if there was nothing to look for.
   const Survey* found(const std::string& log) const;
@@ -56,6 +63,10 @@ class Surveyor {
   Survey survey(const std::string& log, Settings settings);
   LearnedNoise learn_noise(const std::string& log, const calibration::RecordedWay& way,
                            const Settings& settings);
+  std::optional<LearnedNoise> find_noise(const calibration::RecordedWay& way,
+                                         const state::ImuBias& bias,
+                                         const std::optional<LearnedNoise>& before,
+                                         const Settings& settings);
 
   Console& console_;
   std::map<std::string, Survey> seen_;

@@ -79,7 +79,7 @@ Table missing_figures(const ReportPage& page, const RunData& data, const std::st
   table.rows.push_back({"Drift in outages, growth, distribution, ablation",
                         "no outage is simulated in a run; `foucault evaluate` does it"});
   table.rows.push_back(
-      {"Allan deviation", "it takes a recording of hours at rest, not one of motion"});
+      {"Allan deviation", "it is of rest; `foucault allan` draws it where the log rests"});
   table.rows.push_back({"Time and iterations of the solver, an epoch",
                         "they are not kept; `run --profile` times the stages"});
   return table;

@@ -374,4 +374,18 @@ double gain_of(const std::vector<RecordedWay>& ways, const NoiseModel& noise,
                  horizons.every_s);
 }
 
+std::size_t most_likely(const std::vector<RecordedWay>& ways, const std::vector<NoiseModel>& noises,
+                        const LearnOptions& options) {
+  std::size_t best = 0;
+  double highest = -std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < noises.size(); ++i) {
+    Landscape landscape(ways, noises[i], options, options.starts);
+    const double height = place_at(landscape, landscape.origin()).height;
+    if (height <= highest) continue;
+    highest = height;
+    best = i;
+  }
+  return best;
+}
+
 }  // namespace foucault::calibration

@@ -192,7 +192,9 @@ void judge_density(const std::string& name, const std::string& key, double measu
   const std::string text = fmt::format("{:.3g} {} at rest, {:.3g} configured", measured / unit,
                                        unit_name, configured / unit);
   if (ratio > 3) {
-    out.warn(name, text, fmt::format("{}={:.2g}, or the preset of this IMU", key, measured / unit));
+    out.warn(
+        name, text,
+        fmt::format("{}={:.2g}, or the preset of this IMU (auto: learned)", key, measured / unit));
   } else if (ratio < 0.1) {
     out.warn(name, text, "the configuration is of a much worse IMU; choose its own preset");
   } else {

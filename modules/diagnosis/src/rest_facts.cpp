@@ -28,6 +28,8 @@ constexpr double kWander = 0.1;  // [m/s]
 }  // namespace
 
 void RestWatch::add(const ImuIncrement& increment) {
+  if (second_.length == 0) second_.begin_ns = increment.t_begin_ns;
+  second_.end_ns = increment.t_end_ns;
   second_.gyro += increment.dtheta_b;
   second_.accel += increment.dvel_b;
   second_.length += increment.dt();
@@ -92,6 +94,12 @@ void RestWatch::end_stretch() {
 /// Fixes may creep; of their steps the median is that, whatever outliers are among them.
 void RestWatch::take_stretch() {
   for (const Second& second : stretch_.seconds) take(second);
+  const Rest rest{stretch_.seconds.front().begin_ns, stretch_.seconds.back().end_ns};
+  if (goes_on_ && !rests_.empty()) {
+    rests_.back().end_ns = rest.end_ns;
+  } else {
+    rests_.push_back(rest);
+  }
   if (stretch_.steps.empty()) return;
   std::vector<double> north, east;
   for (const Step& step : stretch_.steps) {
@@ -117,6 +125,18 @@ RestFacts RestWatch::facts() const {
   RestWatch all = *this;
   all.end_stretch();
   return all.taken();
+}
+
+/// A slow start looks like rest in its first second.
+std::vector<Rest> RestWatch::rests() const {
+  RestWatch all = *this;
+  all.end_stretch();
+  std::vector<Rest> rests;
+  for (const Rest& rest : all.rests_) {
+    const int64_t end_ns = rest.end_ns - kNanosecondsPerSecond;
+    if (end_ns > rest.begin_ns) rests.push_back({rest.begin_ns, end_ns});
+  }
+  return rests;
 }
 
 RestFacts RestWatch::taken() const {

@@ -98,6 +98,36 @@ TEST(RestWatch, AStopAmidADrive) {
   EXPECT_NEAR(watch.facts().fix_scatter, 1, 0.6);  // of some 35 values: three sigmas
 }
 
+/// Of 40 s from 40 s on: without the three seconds that show it and without its end.
+TEST(RestWatch, TellsWhereARestLies) {
+  LevelDrive drive;
+  drive.speed = [](double t) { return 10 * std::max(0.0, std::abs(t - 60) / 20 - 1); };
+  drive.seconds = 120;
+  drive.fix_sigma = 0.1;
+  RestWatch watch;
+  drive.feed(watch);
+  const std::vector<Rest> rests = watch.rests();
+  ASSERT_EQ(rests.size(), 1u);
+  const double begin = seconds_between(LevelDrive::kStart, rests[0].begin_ns);
+  const double end = seconds_between(LevelDrive::kStart, rests[0].end_ns);
+  EXPECT_GT(begin, 40);
+  EXPECT_LT(begin, 45);
+  EXPECT_LT(end, 80);
+  EXPECT_GT(end, 76);
+}
+
+/// However many stretches it is told by.
+TEST(RestWatch, ALongRestIsOne) {
+  RestWatch watch;
+  standing(0.1, 400).feed(watch);
+  const std::vector<Rest> rests = watch.rests();
+  ASSERT_EQ(rests.size(), 1u);
+  EXPECT_NEAR(seconds_between(rests[0].begin_ns, rests[0].end_ns), 400 - 5, 1.1);
+  RestWatch moving;
+  winding().feed(moving);
+  EXPECT_TRUE(moving.rests().empty());
+}
+
 /// Sigmas that are too small by 14 do not hide that it rests, and show.
 TEST(RestWatch, FixesThatScatterMoreThanTheySayStillRest) {
   LevelDrive drive = standing(0.28, 200);

@@ -36,12 +36,19 @@ struct Preset {
 // 0.5 mg is an assumption, half of what the authors found by tuning (1000 mGal). Turn-on sigmas are
 // what we assume is left after factory calibration; data sheets do not give them.
 //
+// consumer: InvenSense MPU-9250 data sheet (PS-MPU-9250A-01, 1.1): 0.01 deg/s/sqrt(Hz), 300
+// ug/sqrt(Hz), 5 deg/s and 60 mg at turn-on at most. phone: Bosch BMI160 data sheet
+// (BST-BMI160-DS000): 0.007 deg/s/sqrt(Hz), 180 ug/sqrt(Hz), 3 deg/s and 40 mg, less what phones
+// calibrate themselves. Bias variations are in neither sheet, assumed: twice those of the
+// ICM-20602, and five and four times for what warms and cools in a hand. Of turn-on values a tenth
+// and a half of the sheet's limit, of a phone's a thirtieth and a half.
+//
 // tactical: Northrop Grumman LN-200 (fibre-optic gyros) data sheet: 0.07 deg/sqrt(h), 1 deg/h bias
 // repeatability, 0.35 deg/h bias variation; accelerometers 35 ug/sqrt(Hz), 300 ug, 50 ug.
 // navigation: Honeywell HG9900 (ring laser gyros) data sheet: 0.002 deg/sqrt(h), 0.0035 deg/h bias;
 // accelerometers 25 ug bias. Not in the sheet, assumed as usual for the class: bias variation of a
 // third of the bias, 5 ug/sqrt(Hz).
-constexpr std::array<Preset, 6> kPresets{{
+constexpr std::array<Preset, 8> kPresets{{
     {"ICM20602",
      {0.24 * kDegPerSqrtHour, 100 * kMicroG, 10 * kDegPerHour, 0.5 * kMilliG, 3600,
       360 * kDegPerHour, 5 * kMilliG}},
@@ -54,6 +61,12 @@ constexpr std::array<Preset, 6> kPresets{{
     {"HGuide-i300",
      {0.15 * kDegPerSqrtHour, 0.033 * kMPerSPerSqrtHour, 3 * kDegPerHour, 0.02 * kMilliG, 3600,
       60 * kDegPerHour, 0.5 * kMilliG}},
+    {"consumer",
+     {0.6 * kDegPerSqrtHour, 300 * kMicroG, 20 * kDegPerHour, 1 * kMilliG, 3600, 1800 * kDegPerHour,
+      30 * kMilliG}},
+    {"phone",
+     {0.42 * kDegPerSqrtHour, 180 * kMicroG, 50 * kDegPerHour, 2 * kMilliG, 3600, 360 * kDegPerHour,
+      20 * kMilliG}},
     {"tactical",
      {0.07 * kDegPerSqrtHour, 35 * kMicroG, 0.35 * kDegPerHour, 50 * kMicroG, 3600, 1 * kDegPerHour,
       300 * kMicroG}},
@@ -70,8 +83,8 @@ MarkovBias markov_bias(double turn_on_sigma, double sigma, double tau) {
 
 constexpr const char* kDefaultPreset = "ADIS16465";
 
-std::vector<std::string> with_as_recorded(std::vector<std::string> names) {
-  names.insert(names.begin(), ImuOptions::kAsRecorded);
+std::vector<std::string> choices_and(std::vector<std::string> names) {
+  names.insert(names.begin(), {ImuOptions::kAsRecorded, "auto"});
   return names;
 }
 
@@ -104,9 +117,9 @@ ImuNoise imu_preset(const std::string& name) {
 }
 
 void ImuOptions::fields(ConfigFields& f) {
-  f.text("preset", preset, with_as_recorded(imu_preset_names()),
+  f.text("preset", preset, choices_and(imu_preset_names()),
          "IMU whose noise is taken, keys below override it; as_recorded: what the log says, else "
-         "ADIS16465");
+         "ADIS16465; auto: learned from the recording, from the preset that is nearest");
   f.text("samples", samples, {kAsRecorded, "interval_mean", "instantaneous"},
          "interval_mean: mean over the interval that ends at the stamp; instantaneous: at the "
          "stamp; as_recorded: what the log says, else interval_mean");
@@ -126,7 +139,8 @@ void ImuOptions::fields(ConfigFields& f) {
 }
 
 ImuNoise ImuOptions::noise() const {
-  ImuNoise noise = imu_preset(preset == kAsRecorded ? kDefaultPreset : preset);
+  const bool named = preset != kAsRecorded && preset != "auto";
+  ImuNoise noise = imu_preset(named ? preset : kDefaultPreset);
   override_with(arw_deg_sqrt_h, kDegPerSqrtHour, noise.gyro_noise_density);
   override_with(vrw_m_s_sqrt_h, kMPerSPerSqrtHour, noise.accel_noise_density);
   override_with(gyro_bias_deg_h, kDegPerHour, noise.gyro_bias_sigma);

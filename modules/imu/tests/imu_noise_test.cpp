@@ -45,6 +45,14 @@ TEST(ImuNoise, BetterGradesAreBetterInEveryNumber) {
   EXPECT_LT(better.accel_turn_on_sigma, worse.accel_turn_on_sigma);
 }
 
+TEST(ImuNoise, DataSheetsOfConsumerAndPhone) {
+  const ImuNoise consumer = imu_preset("consumer"), phone = imu_preset("phone");
+  expect_near_relative(consumer.gyro_noise_density, 0.01 * kDegree);  // MPU-9250
+  expect_near_relative(consumer.accel_noise_density, 300e-6 * kStandardGravity);
+  expect_near_relative(phone.gyro_noise_density, 0.007 * kDegree);  // BMI160
+  expect_near_relative(phone.accel_noise_density, 180e-6 * kStandardGravity);
+}
+
 /// Variance and driving noise q = 2 sigma^2 / tau are those of turn-on value plus variation.
 TEST(ImuNoise, BiasAsOneMarkovProcess) {
   const ImuNoise noise = imu_preset("navigation");
@@ -88,6 +96,15 @@ TEST(ImuNoise, UnknownPresetNamesTheKnown) {
     EXPECT_NE(std::string(error.what()).find("ADIS16465"), std::string::npos) << error.what();
     EXPECT_NE(std::string(error.what()).find("ADIS16466"), std::string::npos) << error.what();
   }
+}
+
+/// It is a choice of the configuration, and no IMU: nobody can ask for its noise by name.
+TEST(ImuOptions, AutoIsAChoiceAndNoPreset) {
+  ImuOptions options;
+  load_config_text("{preset: auto}", "test", options);
+  EXPECT_EQ(options.preset, "auto");
+  EXPECT_EQ(options.completed_by(ImuOptions()).preset, "auto");
+  EXPECT_THROW(imu_preset("auto"), UsageError);
 }
 
 TEST(ImuOptions, OverridesReplaceSingleValuesInTheirUnits) {

@@ -77,4 +77,9 @@ Learned learn(const std::vector<RecordedWay>& ways, const NoiseModel& told,
 double gain_of(const std::vector<RecordedWay>& ways, const NoiseModel& noise,
                const NoiseModel& other, const LearnOptions& options);
 
+/// Which of some noises makes all predictions, those of aids too, the most likely, horizons alike.
+/// Precondition: there is one.
+std::size_t most_likely(const std::vector<RecordedWay>& ways, const std::vector<NoiseModel>& noises,
+                        const LearnOptions& options);
+
 }  // namespace foucault::calibration

@@ -26,6 +26,11 @@ struct RestFacts {
   int64_t fix_pairs = 0;
 };
 
+/// From when to when nothing moved, without what led to it or away from it.
+struct Rest {
+  int64_t begin_ns = 0, end_ns = 0;
+};
+
 /// Collects them, second by second. At rest the means of three seconds in a row agree with the
 /// next, and no fix moves. That a fix does not move is told over all such seconds together, up to
 /// half a minute: one second of a steady drive looks like one of rest if it is short against the
@@ -35,9 +40,13 @@ class RestWatch {
   void add(const ImuIncrement& increment);
   void add(const GnssFix& fix);
   RestFacts facts() const;
+  /// Whole rests of which facts() are; the second that shows motion and the one before it are left
+  /// out.
+  std::vector<Rest> rests() const;
 
  private:
   struct Second {
+    int64_t begin_ns = 0, end_ns = 0;
     Eigen::Vector3d gyro = Eigen::Vector3d::Zero(), accel = Eigen::Vector3d::Zero();
     double length = 0;
   };
@@ -67,6 +76,7 @@ class RestWatch {
   Stretch stretch_;
   bool goes_on_ = false;  ///< the stretch follows on rest
   int64_t still_ = 0;     ///< seconds at rest
+  std::vector<Rest> rests_;
   std::array<FirstValues, 3> gyro_;
   std::array<AllanWatch, 3> allan_{AllanWatch(1), AllanWatch(2), AllanWatch(4)};
   FirstValues scatter_;

@@ -1,0 +1,11 @@
+#pragma once
+
+#include "foucault/page/report_page.h"
+#include "jobs/allan_job.h"
+
+namespace foucault::app {
+
+/// Allan deviations with their fits beside the presets, and spectra at rest and in motion.
+page::ReportPage allan_page(const AllanResult& result);
+
+}  // namespace foucault::app
