@@ -1,5 +1,3 @@
-#include "foucault/rawlog/rawlog_info.h"
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -7,6 +5,7 @@
 #include "foucault/core/hole.h"
 #include "foucault/imu/burst_stamps.h"
 #include "foucault/rawlog/mrpt_convert.h"
+#include "mrpt_entries.h"
 #include "notes_comment.h"
 #include "rawlog_stream.h"
 
@@ -263,7 +262,7 @@ class Collector {
 
 }  // namespace
 
-RawlogInfo read_rawlog_info(const std::string& path, const std::function<void(double)>& progress) {
+RawlogInfo mrpt_info(const std::string& path, const std::function<void(double)>& progress) {
   constexpr int64_t kObservationsPerReport = 2000;
   RawlogInfo info;
   rawlog::RawlogStream stream(path);
