@@ -201,12 +201,12 @@ class Collector {
   void add_imu(const rawlog::ImuRecord& imu) {
     has_accel_ = has_accel_ || imu.accel_b;
     if (imu.gyro_b && !gyro_pose_) {
-      gyro_pose_ = rawlog::from_mrpt(rawlog::pose_of(imu));
+      gyro_pose_ = rawlog::from_mrpt(rawlog::pose_of(imu.pose));
       gyro_label_ = imu.label;
     }
     if (!imu.sample) return;
     if (!imu_pose_) {
-      imu_pose_ = rawlog::from_mrpt(rawlog::pose_of(imu));
+      imu_pose_ = rawlog::from_mrpt(rawlog::pose_of(imu.pose));
       info_.imu_label = imu.label;
       info_.mounting = state::Mounting{imu_pose_->q_v_s};
     }

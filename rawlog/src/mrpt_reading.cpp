@@ -73,7 +73,7 @@ class OverviewScan {
       : path_(path), options_(options) {}
 
   Overview run() {
-    rawlog::RawlogStream stream(path_);
+    rawlog::RawlogStream stream(path_, options_.reference_label);
     while (!(imu_found_ && gnss_found_)) {
       const std::optional<LoggedObservation> logged = stream.next();
       if (!logged) {
@@ -104,7 +104,7 @@ class OverviewScan {
     constexpr int kSoon = 200;
     if (imu.sample || (imu.gyro_b && !gyro_found_)) {
       overview_.imu_label = imu.label;
-      overview_.imu = rawlog::from_mrpt(rawlog::pose_of(imu));
+      overview_.imu = rawlog::from_mrpt(rawlog::pose_of(imu.pose));
     }
     if (imu.accel_b && !accel_found_) overview_.accel_label = imu.label;
     gyro_found_ = gyro_found_ || imu.gyro_b;
@@ -173,8 +173,6 @@ bool same(const imu::ImuSample& a, const imu::ImuSample& b) {
   return a.t_ns == b.t_ns && a.gyro_b == b.gyro_b && a.accel_b == b.accel_b;
 }
 
-}  // namespace
-
 class MrptReading final : public LogReading {
  public:
   MrptReading(const std::string& path, imu::SampleKind samples, const RawlogOptions& options)
@@ -186,7 +184,7 @@ class MrptReading final : public LogReading {
         lever_arm_told_(mrpt_notes(path).lever_arm),
         mounting_{overview_.imu.q_v_s},
         lever_arm_(lever_arm_to(overview_.antenna)),
-        stream_(path),
+        stream_(path, options.reference_label),
         incrementer_(samples) {}
 
   std::optional<Measurement> next() override {
@@ -224,7 +222,8 @@ class MrptReading final : public LogReading {
   void convert(const imu::ImuSample& sample, int64_t stamp_ns);
   void take_gps(const mrpt::obs::CObservationGPS& gps, int64_t t_ns);
   void take_velocity(const mrpt::obs::CObservationGPS& gps, int64_t t_ns);
-  void take_reference(const ReferencePose& pose, const mrpt::poses::CPose3D& sensor_pose,
+  const rawlog::SensorPose& pose_of(const rawlog::InsRecord& ins);
+  void take_reference(const ReferencePose& pose, const rawlog::SensorPose& from,
                       std::string_view type);
   void take_odometry(const mrpt::obs::CObservationOdometry& odometry, int64_t t_ns);
   /// False if it comes too late to be put in order.
@@ -260,8 +259,10 @@ class MrptReading final : public LogReading {
   std::deque<ImuIncrement> increments_;
   std::multimap<int64_t, Measurement> others_;
   std::map<int64_t, rawlog::GroundVelocity> waiting_velocities_;  ///< their fixes are still to come
-  Eigen::Vector3d reference_arm_v_ = Eigen::Vector3d::Zero();     ///< reference to IMU
-  imu::RecentRates rates_{imu::kLeverArmRateMemory};              ///< of what was released
+  std::vector<unsigned char> ins_pose_bytes_;                     ///< of the InsRecord before
+  rawlog::SensorPose ins_pose_;
+  Eigen::Vector3d reference_arm_v_ = Eigen::Vector3d::Zero();  ///< reference to IMU
+  imu::RecentRates rates_{imu::kLeverArmRateMemory};           ///< of what was released
   int64_t newest_imu_ns_ = std::numeric_limits<int64_t>::min();
   int64_t released_ns_ = std::numeric_limits<int64_t>::min();
   int64_t released_increment_ns_ = std::numeric_limits<int64_t>::min();
@@ -312,7 +313,7 @@ void MrptReading::read_one() {
   if (!logged) {
     over_ = true;
     end();
-  } else if (!logged->imu && !logged->observation) {
+  } else if (!logged->imu && !logged->ins && !logged->observation) {
     skip(logged->type);
   } else if (!logged->t_ns) {
     skip(logged->type, "no stamp");
@@ -323,6 +324,9 @@ void MrptReading::read_one() {
 
 void MrptReading::dispatch(const LoggedObservation& logged, int64_t t_ns) {
   if (logged.imu) return take_imu(*logged.imu, logged.record, t_ns);
+  if (logged.ins) {
+    return take_reference(rawlog::decode_reference(*logged.ins, t_ns), pose_of(*logged.ins), kGps);
+  }
   if (const auto* gps = as_gps(logged)) return take_gps(*gps, t_ns);
   const mrpt::obs::CObservation* observation = logged.observation.get();
   if (const auto* odometry = dynamic_cast<const mrpt::obs::CObservationOdometry*>(observation)) {
@@ -331,7 +335,7 @@ void MrptReading::dispatch(const LoggedObservation& logged, int64_t t_ns) {
   const auto* pose = dynamic_cast<const mrpt::obs::CObservationRobotPose*>(observation);
   if (pose != nullptr && pose->sensorLabel == options_.reference_label) {
     return take_reference(rawlog::decode_reference(*pose, overview_.first_fix, t_ns),
-                          pose->sensorPose, logged.type);
+                          rawlog::from_mrpt(pose->sensorPose), logged.type);
   }
   if (notes_comment(logged) == nullptr) skip(logged.type);
 }
@@ -431,7 +435,7 @@ void MrptReading::take_gps(const mrpt::obs::CObservationGPS& gps, int64_t t_ns) 
   if (gps.sensorLabel == options_.reference_label) {
     const std::optional<ReferencePose> pose = rawlog::decode_reference(gps, t_ns);
     if (!pose) return skip(kGps, "reference without INSPVAS");
-    return take_reference(*pose, gps.sensorPose, kGps);
+    return take_reference(*pose, rawlog::from_mrpt(gps.sensorPose), kGps);
   }
   if (receiver_of(gps.sensorLabel) != receiver_of(overview_.gnss_label)) {
     return skip(kGps, "another label");
@@ -481,9 +485,18 @@ void MrptReading::take_velocity(const mrpt::obs::CObservationGPS& gps, int64_t t
   if (waiting_velocities_.size() > kMost) waiting_velocities_.erase(waiting_velocities_.begin());
 }
 
-void MrptReading::take_reference(const ReferencePose& pose, const mrpt::poses::CPose3D& sensor_pose,
+/// It is the same in all records, as a rule.
+const rawlog::SensorPose& MrptReading::pose_of(const rawlog::InsRecord& ins) {
+  const Bytes& bytes = ins.pose;
+  if (!std::equal(bytes.begin, bytes.end, ins_pose_bytes_.begin(), ins_pose_bytes_.end())) {
+    ins_pose_bytes_.assign(bytes.begin, bytes.end);
+    ins_pose_ = rawlog::from_mrpt(rawlog::pose_of(bytes));
+  }
+  return ins_pose_;
+}
+
+void MrptReading::take_reference(const ReferencePose& pose, const rawlog::SensorPose& from,
                                  std::string_view type) {
-  const rawlog::SensorPose from = rawlog::from_mrpt(sensor_pose);
   const ReferencePose of_imu = rawlog::moved_to_imu(pose, from, overview_.imu.p_v_s);
   reference_arm_v_ = overview_.imu.p_v_s - from.p_v_s;
   if (!is_finite(of_imu.position)) return skip_noted(type, kNotFinite, pose.t_ns);
@@ -599,6 +612,8 @@ std::vector<state::Notice> MrptReading::notices() const {
   }
   return notices;
 }
+
+}  // namespace
 
 std::unique_ptr<LogReading> mrpt_reading(const std::string& path, imu::SampleKind samples,
                                          const RawlogOptions& options) {
