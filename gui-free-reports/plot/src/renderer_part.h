@@ -20,5 +20,5 @@ class Drawing {
 }  // namespace foucault::plot
 
 /// A new one, to be deleted; null in a program that has yet to load it.
-extern "C" [[gnu::weak, gnu::visibility("default")]] foucault::plot::Drawing* foucault_renderer_part(
-    const foucault::plot::Fonts& fonts);
+extern "C" [[gnu::weak, gnu::visibility("default")]] foucault::plot::Drawing*
+foucault_renderer_part(const foucault::plot::Fonts& fonts);
