@@ -4,6 +4,7 @@
 
 #include <exception>
 #include <filesystem>
+#include <iterator>
 #include <utility>
 #include <vector>
 
