@@ -13,6 +13,7 @@ foucault_generate(bash bash-completion/completions/foucault)
 foucault_generate(zsh zsh/vendor-completions/_foucault) # where Debian's zsh looks
 
 install(TARGETS foucault RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
+install(TARGETS ${parts} LIBRARY DESTINATION lib/foucault COMPONENT program)  # see load_part()
 install(DIRECTORY ${generated}/ DESTINATION ${CMAKE_INSTALL_DATADIR} COMPONENT program)
 install(DIRECTORY configs ${PROJECT_SOURCE_DIR}/rawlog/mappings
         DESTINATION ${CMAKE_INSTALL_DATADIR}/foucault COMPONENT program)

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <type_traits>
 
@@ -393,29 +394,6 @@ std::optional<GnssFix> position_of(const mrpt::obs::CObservationGPS& gps) {
 
 }  // namespace
 
-NmeaSigma nmea_sigma(FixQuality quality, std::optional<double> hdop) {
-  double horizontal = 1.7;
-  switch (quality) {
-    case FixQuality::fixed_rtk:
-      horizontal = 0.015;
-      break;
-    case FixQuality::float_rtk:
-      horizontal = 0.25;
-      break;
-    case FixQuality::ppp:
-      horizontal = 0.1;
-      break;
-    case FixQuality::differential:
-      horizontal = 0.7;
-      break;
-    case FixQuality::single:
-    case FixQuality::unknown:
-      break;
-  }
-  const double dilution = hdop ? std::max(*hdop, 0.5) : 1.0;
-  return {horizontal * dilution, 2 * horizontal * dilution};
-}
-
 std::optional<GroundVelocity> decode_velocity(const mrpt::obs::CObservationGPS& gps) {
   const auto* rmc = message<gnss::Message_NMEA_RMC>(gps);
   const auto* vtg = message<gnss::Message_NMEA_VTG>(gps);
@@ -481,10 +459,10 @@ void encode_fix(const GnssFix& fix, mrpt::obs::CObservationGPS& gps) {
   if (fix.velocity_n || !is_diagonal(fix.position_covariance)) gps.setMsg(pzs_of(fix));
 }
 
-std::optional<ReferencePose> decode_reference(const mrpt::obs::CObservationGPS& gps, int64_t t_ns) {
-  const auto* ins = message<gnss::Message_NV_OEM6_INSPVAS>(gps);
-  if (ins == nullptr) return std::nullopt;
-  const auto fields = ins->fields;
+namespace {
+
+ReferencePose pose_of_inspvas(const gnss::Message_NV_OEM6_INSPVAS::content_t& fields,
+                              int64_t t_ns) {
   ReferencePose pose;
   pose.t_ns = t_ns;
   pose.position = geodetic(fields.lat, fields.lon, fields.hgt);
@@ -497,6 +475,20 @@ std::optional<ReferencePose> decode_reference(const mrpt::obs::CObservationGPS& 
         so3::from_euler({angles.x() * kDegree, angles.y() * kDegree, angles.z() * kDegree});
   }
   return pose;
+}
+
+}  // namespace
+
+std::optional<ReferencePose> decode_reference(const mrpt::obs::CObservationGPS& gps, int64_t t_ns) {
+  const auto* ins = message<gnss::Message_NV_OEM6_INSPVAS>(gps);
+  if (ins == nullptr) return std::nullopt;
+  return pose_of_inspvas(ins->fields, t_ns);
+}
+
+ReferencePose decode_reference(const InsRecord& record, int64_t t_ns) {
+  gnss::Message_NV_OEM6_INSPVAS::content_t fields;
+  std::memcpy(static_cast<void*>(&fields), record.message.begin, sizeof(fields));
+  return pose_of_inspvas(fields, t_ns);
 }
 
 void encode_reference(const ReferencePose& pose, mrpt::obs::CObservationGPS& gps) {

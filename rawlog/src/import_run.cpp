@@ -14,7 +14,7 @@
 #include "foucault/core/hole.h"
 #include "foucault/core/time.h"
 #include "foucault/core/time_mismatch.h"
-#include "foucault/rawlog/mrpt_convert.h"
+#include "foucault/rawlog/rawlog_writer.h"
 
 namespace foucault::rawlog {
 

@@ -6,7 +6,7 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
-#include <new>
+#include <utility>
 
 #include "files.h"
 #include "foucault/core/error.h"
@@ -16,8 +16,7 @@ namespace foucault::rawlog {
 namespace {
 
 constexpr size_t kInputSize = size_t{1} << 16;
-constexpr size_t kInflatedSize = 3 * InflatedFile::kWindow;
-constexpr int kGzipOnly = 16 + MAX_WBITS;
+constexpr size_t kInflatedSize = 8 * InflatedFile::kWindow;
 constexpr unsigned char kGzipMagic[] = {0x1F, 0x8B};
 
 }  // namespace
@@ -34,14 +33,14 @@ InflatedFile::InflatedFile(const std::string& path)
   const uint64_t size = std::filesystem::file_size(path, error);
   file_size_ = error ? 0 : size;
   load(End::clean);
-  compressed_ = stream_.avail_in >= sizeof kGzipMagic &&
-                std::equal(std::begin(kGzipMagic), std::end(kGzipMagic), stream_.next_in);
-  if (compressed_ && inflateInit2(&stream_, kGzipOnly) != Z_OK) throw std::bad_alloc();
-  in_member_ = compressed_;
-}
-
-InflatedFile::~InflatedFile() {
-  if (compressed_) inflateEnd(&stream_);
+  compressed_ = rest_.size() >= sizeof kGzipMagic &&
+                std::equal(std::begin(kGzipMagic), std::end(kGzipMagic), rest_.begin);
+  if (!compressed_) return;
+  in_member_ = true;
+  inflater_ = isal_inflater();
+  if (inflater_) return;
+  inflater_ = zlib_inflater();
+  by_zlib_ = true;
 }
 
 double InflatedFile::progress() const {
@@ -52,7 +51,7 @@ double InflatedFile::progress() const {
 bool InflatedFile::go_to(uint64_t offset) {
   if (compressed_ || offset > file_size_) return false;
   if (fseeko(file_.get(), static_cast<off_t>(offset), SEEK_SET) != 0) return false;
-  stream_.avail_in = 0;
+  rest_ = {};
   position_ = 0;
   filled_ = 0;
   offset_ = offset;
@@ -77,46 +76,67 @@ void InflatedFile::fill() {
 /// The next piece of the file; without one the contents end, with `at_end` if the file does.
 bool InflatedFile::load(End at_end) {
   const size_t count = std::fread(input_.data(), 1, input_.size(), file_.get());
-  stream_.next_in = input_.data();
-  stream_.avail_in = static_cast<uInt>(count);
+  rest_ = {input_.data(), input_.data() + count};
   if (count == 0) end_ = std::ferror(file_.get()) != 0 ? End::unreadable : at_end;
   return count > 0;
 }
 
 void InflatedFile::copy() {
-  if (stream_.avail_in == 0 && !load(End::clean)) return;
-  const size_t count = std::min<size_t>(stream_.avail_in, buffer_.size() - filled_);
-  std::memcpy(buffer_.data() + filled_, stream_.next_in, count);
-  stream_.next_in += count;
-  stream_.avail_in -= static_cast<uInt>(count);
+  if (rest_.size() == 0 && !load(End::clean)) return;
+  const size_t count = std::min(rest_.size(), buffer_.size() - filled_);
+  std::memcpy(buffer_.data() + filled_, rest_.begin, count);
+  rest_.begin += count;
   filled_ += count;
   file_offset_ += count;
 }
 
 void InflatedFile::inflate() {
-  if (stream_.avail_in == 0 && !load(in_member_ ? End::truncated : End::clean)) return;
+  if (rest_.size() == 0 && !holds_back_ && !load(in_member_ ? End::truncated : End::clean)) {
+    if (end_ == End::truncated && by_zlib_from_start()) end_ = End::none;
+    return;
+  }
   if (!in_member_ && !begin_member()) {
     end_ = End::clean;
     return;
   }
-  const uInt before = stream_.avail_in;
-  stream_.next_out = buffer_.data() + filled_;
-  stream_.avail_out = static_cast<uInt>(buffer_.size() - filled_);
-  const int result = ::inflate(&stream_, Z_NO_FLUSH);
-  filled_ = buffer_.size() - stream_.avail_out;
-  file_offset_ += before - stream_.avail_in;
-  if (result == Z_MEM_ERROR) throw std::bad_alloc();
-  if (result == Z_STREAM_END) {
-    in_member_ = false;
-  } else if (result != Z_OK && result != Z_BUF_ERROR) {
+  const unsigned char* const before = rest_.begin;
+  unsigned char* const begin = buffer_.data() + filled_;
+  unsigned char* out = begin;
+  const auto room =
+      std::min<uint64_t>(known_ > 0 ? known_ : buffer_.size(), buffer_.size() - filled_);
+  const GzipInflater::State state = inflater_->inflate(rest_, out, begin + room);
+  file_offset_ += static_cast<uint64_t>(rest_.begin - before);
+  const auto count = static_cast<size_t>(out - begin);
+  if (known_ > 0) {
+    known_ -= count;
+  } else {
+    filled_ += count;
+  }
+  in_member_ = state != GzipInflater::State::member_ends;
+  holds_back_ = in_member_ && out == begin + room;
+  if (state == GzipInflater::State::damaged && !by_zlib_from_start()) {
+    filled_ -= std::min<uint64_t>(known_, filled_ - position_);  // no such bytes, as zlib sees it
     end_ = End::damaged;
   }
 }
 
 /// Another gzip member may follow; anything else behind the last one is padding, as gzip sees it.
 bool InflatedFile::begin_member() {
-  if (*stream_.next_in != kGzipMagic[0]) return false;
-  inflateReset(&stream_);
+  if (*rest_.begin != kGzipMagic[0]) return false;
+  inflater_->reset();
+  in_member_ = true;
+  return true;
+}
+
+/// Where compression breaks, zlib says what can still be had and where the break is. False if it
+/// is zlib that found it.
+bool InflatedFile::by_zlib_from_start() {
+  if (std::exchange(by_zlib_, true) || fseeko(file_.get(), 0, SEEK_SET) != 0) return false;
+  inflater_ = zlib_inflater();
+  known_ = offset_ + (filled_ - position_);
+  rest_ = {};
+  file_offset_ = 0;
+  holds_back_ = false;
   in_member_ = true;
   return true;
 }

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <zlib.h>
-
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
@@ -9,15 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "gzip_inflater.h"
+
 namespace foucault::rawlog {
-
-/// A part of a buffer that someone else owns.
-struct Bytes {
-  const unsigned char* begin = nullptr;
-  const unsigned char* end = nullptr;
-
-  size_t size() const { return static_cast<size_t>(end - begin); }
-};
 
 /// The contents of a gzip or plain file, through a window that slides over them. Memory is
 /// constant. What was inflated before a damage is still given out; end() tells what came then.
@@ -29,9 +21,6 @@ class InflatedFile {
 
   /// Throws DataError if the file is missing, a directory, empty or cannot be read.
   explicit InflatedFile(const std::string& path);
-  ~InflatedFile();
-  InflatedFile(const InflatedFile&) = delete;
-  InflatedFile& operator=(const InflatedFile&) = delete;
 
   /// Bytes from offset() on; valid until the next call.
   Bytes window() {
@@ -68,6 +57,7 @@ class InflatedFile {
   void copy();
   void inflate();
   bool begin_member();
+  bool by_zlib_from_start();
 
   std::string path_;
   std::unique_ptr<std::FILE, FileClose> file_;
@@ -75,8 +65,12 @@ class InflatedFile {
   uint64_t file_offset_ = 0;
   bool compressed_ = false;
   bool in_member_ = false;
-  z_stream stream_{};
+  std::unique_ptr<GzipInflater> inflater_;
+  bool by_zlib_ = false;
+  bool holds_back_ = false;  ///< the inflater may have more than there was room for
+  uint64_t known_ = 0;       ///< bytes to be inflated that were given out before
   std::vector<unsigned char> input_;
+  Bytes rest_;  ///< of the input
   std::vector<unsigned char> buffer_;
   size_t position_ = 0;
   size_t filled_ = 0;

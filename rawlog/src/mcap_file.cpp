@@ -1,6 +1,7 @@
 #include "mcap_file.h"
 
 #include <fmt/format.h>
+#include <zlib.h>
 
 #include <algorithm>
 #include <string_view>

@@ -3,6 +3,7 @@
 #include "foucault/core/so3.h"
 #include "foucault/core/time.h"
 #include "foucault/geodesy/local_frame.h"
+#include "foucault/rawlog/rawlog_writer.h"
 
 namespace foucault::rawlog {
 
@@ -11,9 +12,6 @@ namespace {
 constexpr int64_t kTicksPerSecond = 10'000'000;
 constexpr int64_t kUnixEpochTicks = 11'644'473'600 * kTicksPerSecond;  // 1601 to 1970
 constexpr int64_t kNanosecondsPerTick = kNanosecondsPerSecond / kTicksPerSecond;
-/// 1950 to 2150: differences between stamps fit into int64 nanoseconds.
-constexpr int64_t kEarliestTicks = -631'152'000 * kTicksPerSecond;
-constexpr int64_t kLatestTicks = 5'680'281'600 * kTicksPerSecond;
 
 int64_t nearest_tick(int64_t t_ns) {
   const int64_t shifted = t_ns + (t_ns >= 0 ? 1 : -1) * kNanosecondsPerTick / 2;
@@ -37,8 +35,8 @@ Eigen::Quaterniond rotation_of(const mrpt::poses::CPose3D& pose) {
 }  // namespace
 
 std::optional<int64_t> from_mrpt(mrpt::system::TTimeStamp t) {
-  constexpr int64_t kEarliest = kUnixEpochTicks + kEarliestTicks;
-  constexpr int64_t kLatest = kUnixEpochTicks + kLatestTicks;
+  constexpr int64_t kEarliest = kUnixEpochTicks + kEarliestStamp / kNanosecondsPerTick;
+  constexpr int64_t kLatest = kUnixEpochTicks + kLatestStamp / kNanosecondsPerTick;
   const int64_t ticks = t.time_since_epoch().count();
   if (ticks < kEarliest || ticks > kLatest) return std::nullopt;
   return (ticks - kUnixEpochTicks) * kNanosecondsPerTick;
@@ -46,10 +44,6 @@ std::optional<int64_t> from_mrpt(mrpt::system::TTimeStamp t) {
 
 mrpt::system::TTimeStamp to_mrpt(int64_t t_ns) {
   return mrpt::system::TTimeStamp(mrpt::Clock::duration(nearest_tick(t_ns) + kUnixEpochTicks));
-}
-
-bool in_range_of_stamps(int64_t t_ns) {
-  return t_ns >= kEarliestTicks * kNanosecondsPerTick && t_ns <= kLatestTicks * kNanosecondsPerTick;
 }
 
 int64_t quantized(int64_t t_ns) { return nearest_tick(t_ns) * kNanosecondsPerTick; }

@@ -239,15 +239,20 @@ bool is_set(const bool& field) {
   return byte != 0;
 }
 
-/// A message whose fields lie in one block.
+/// The fields of a message, which lie in one block.
+template <class Message>
+Bytes take_block(RecordCursor& cursor) {
+  constexpr size_t kSize = sizeof(Message::fields);
+  if (cursor.get<uint32_t>() != kSize) throw BadRecord("a GNSS message of another length");
+  const unsigned char* const begin = cursor.take(kSize);
+  return {begin, begin + kSize};
+}
+
 template <class Message>
 void read_block(RecordCursor& cursor, mrpt::obs::CObservationGPS& gps) {
   Message message;
-  if (cursor.get<uint32_t>() != sizeof(message.fields)) {
-    throw BadRecord("a GNSS message of another length");
-  }
-  std::memcpy(static_cast<void*>(&message.fields), cursor.take(sizeof(message.fields)),
-              sizeof(message.fields));
+  const Bytes block = take_block<Message>(cursor);
+  std::memcpy(static_cast<void*>(&message.fields), block.begin, block.size());
   if constexpr (std::is_same_v<Message, gnss::Message_NMEA_GGA>) {
     message.fields.thereis_HDOP = is_set(message.fields.thereis_HDOP);
   }
@@ -292,6 +297,16 @@ void read_message(RecordCursor& cursor, mrpt::obs::CObservationGPS& gps) {
   }
 }
 
+GpsExtras read_extras(RecordCursor& cursor, int version) {
+  GpsExtras extras;
+  if (version >= 12) extras.position_covariance_w = read_optional_covariance(cursor);
+  if (version >= 13) {
+    extras.kind_of_fix = cursor.get<uint8_t>();
+    cursor.skip(sizeof(uint16_t));  // satellite systems
+  }
+  return extras;
+}
+
 void read_messages(RecordCursor& cursor, int version, GpsRecord& gps) {
   gps.timestamp = read_stamp(cursor);
   gps.originalReceivedTimestamp = read_stamp(cursor);
@@ -299,11 +314,7 @@ void read_messages(RecordCursor& cursor, int version, GpsRecord& gps) {
   gps.sensorPose = read_pose(cursor);
   gps.has_satellite_timestamp =
       version >= 11 ? cursor.flag() : gps.timestamp != gps.originalReceivedTimestamp;
-  if (version >= 12) gps.position_covariance_w = read_optional_covariance(cursor);
-  if (version >= 13) {
-    gps.kind_of_fix = cursor.get<uint8_t>();
-    cursor.skip(sizeof(uint16_t));  // satellite systems
-  }
+  static_cast<GpsExtras&>(gps) = read_extras(cursor, version);
   const size_t messages = cursor.count(kMostMessages);
   for (size_t i = 0; i < messages; ++i) read_message(cursor, gps);
 }
@@ -492,6 +503,27 @@ mrpt::obs::CObservation::Ptr read_comment(RecordCursor& cursor, int version) {
   return comment;
 }
 
-mrpt::poses::CPose3D pose_of(const ImuRecord& record) { return pose_of(RecordCursor(record.pose)); }
+std::optional<InsRecord> read_ins(RecordCursor& cursor, int version, std::string_view label) {
+  constexpr int kOldest = 10, kNewest = 13;  // with messages
+  if (version < kOldest || version > kNewest) return std::nullopt;
+  RecordCursor at = cursor;
+  InsRecord record;
+  record.t_ns = from_mrpt(read_stamp(at));
+  read_stamp(at);
+  record.label = at.text(kLongestLabel);
+  if (record.label != label) return std::nullopt;
+  record.pose = walk_pose(at);
+  if (version >= 11) at.flag();
+  read_extras(at, version);
+  if (at.count(kMostMessages) != 1 || at.get<int32_t>() != gnss::NV_OEM6_INSPVAS) {
+    return std::nullopt;
+  }
+  record.message = take_block<gnss::Message_NV_OEM6_INSPVAS>(at);
+  end_of_object(at);
+  cursor = at;
+  return record;
+}
+
+mrpt::poses::CPose3D pose_of(Bytes pose) { return pose_of(RecordCursor(pose)); }
 
 }  // namespace foucault::rawlog

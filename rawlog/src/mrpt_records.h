@@ -8,6 +8,7 @@
 #include <optional>
 #include <string_view>
 
+#include "foucault/core/measurement.h"
 #include "foucault/imu/increments.h"
 #include "inflated_file.h"
 #include "record_cursor.h"
@@ -57,11 +58,23 @@ struct ImuRecord {
   Bytes pose;                                      ///< the object sensorPose
 };
 
-/// sensorPose of the record.
-mrpt::poses::CPose3D pose_of(const ImuRecord& record);
+/// A sensorPose.
+mrpt::poses::CPose3D pose_of(Bytes pose);
 
-/// With what CObservationGPS has since MRPT 2.11.12 (version 12) and 2.15 (version 13).
-struct GpsRecord : mrpt::obs::CObservationGPS {
+/// A CObservationGPS of a reference, which has one at every sample of the IMU: its INSPVAS. Its
+/// views point into the bytes it was read from.
+struct InsRecord {
+  std::optional<int64_t> t_ns;
+  std::string_view label;
+  Bytes pose;     ///< the object sensorPose
+  Bytes message;  ///< the fields of INSPVAS
+};
+
+/// Its pose, as decode_reference() of the whole record.
+ReferencePose decode_reference(const InsRecord& record, int64_t t_ns);
+
+/// What CObservationGPS has since MRPT 2.11.12 (version 12) and 2.15 (version 13).
+struct GpsExtras {
   /// MRPT's GnssFixType, which are numbers here since MRPT 2.5.8 has no names for them.
   enum FixType : uint8_t {
     kUnknown = 0,
@@ -81,12 +94,17 @@ struct GpsRecord : mrpt::obs::CObservationGPS {
   uint8_t kind_of_fix = kUnknown;                        ///< a FixType, or one that came later
 };
 
+struct GpsRecord : mrpt::obs::CObservationGPS, GpsExtras {};
+
 /// These read the fields of an object in one of the versions that its class has had, up to its end.
 /// They throw RecordTooShort, BadRecord and UnknownVersion.
 ImuRecord read_imu(RecordCursor& cursor, int version);  ///< 0 to 4
 /// A GpsRecord of versions 3 (before, there was no stamp) to 13. Of the messages those that we use:
 /// GGA, RMC, VTG, BESTPOS, INSPVAS, PZS.
 mrpt::obs::CObservation::Ptr read_gps(RecordCursor& cursor, int version);
+/// The same of one that bears this label and holds an INSPVAS and nothing else; none of another,
+/// over which `cursor` has not been moved.
+std::optional<InsRecord> read_ins(RecordCursor& cursor, int version, std::string_view label);
 mrpt::obs::CObservation::Ptr read_comment(RecordCursor& cursor, int version);     ///< 0 and 1
 mrpt::obs::CObservation::Ptr read_odometry(RecordCursor& cursor, int version);    ///< 0 to 2
 mrpt::obs::CObservation::Ptr read_robot_pose(RecordCursor& cursor, int version);  ///< 0 and 1

@@ -28,7 +28,8 @@ bool looks_like_mrpt(std::string_view class_name) {
 
 }  // namespace
 
-RawlogStream::RawlogStream(const std::string& path) : path_(path), file_(path) {}
+RawlogStream::RawlogStream(const std::string& path, std::string ins_label)
+    : path_(path), ins_label_(std::move(ins_label)), file_(path) {}
 
 std::optional<LoggedObservation> RawlogStream::next() {
   if (damage_) return std::nullopt;
@@ -74,7 +75,7 @@ std::optional<LoggedObservation> RawlogStream::read_object(const ObjectHeader& h
   cursor.skip(header.size);
   const std::string_view type = without_namespace(object_);
   if (type == "CObservationIMU") return read_imu_object(cursor, header.version);
-  if (type == "CObservationGPS") return read_observation(cursor, read_gps, header.version);
+  if (type == "CObservationGPS") return read_gps_object(cursor, header.version);
   if (type == "CObservationOdometry")
     return read_observation(cursor, read_odometry, header.version);
   if (type == "CObservationRobotPose") {
@@ -97,6 +98,17 @@ LoggedObservation RawlogStream::read_imu_object(RecordCursor& cursor, int versio
   LoggedObservation logged = begin_observation();
   logged.imu = read_imu(cursor, version);
   logged.t_ns = frame_t_ns_ ? frame_t_ns_ : logged.imu->t_ns;
+  finish_object(cursor.position());
+  return logged;
+}
+
+LoggedObservation RawlogStream::read_gps_object(RecordCursor& cursor, int version) {
+  if (ins_label_.empty()) return read_observation(cursor, read_gps, version);
+  std::optional<InsRecord> ins = read_ins(cursor, version, ins_label_);
+  if (!ins) return read_observation(cursor, read_gps, version);
+  LoggedObservation logged = begin_observation();
+  logged.t_ns = frame_t_ns_ ? frame_t_ns_ : ins->t_ns;
+  logged.ins = std::move(ins);
   finish_object(cursor.position());
   return logged;
 }

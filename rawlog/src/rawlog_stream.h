@@ -13,11 +13,12 @@
 
 namespace foucault::rawlog {
 
-/// An observation and where it stood. Exactly one of `imu` and `observation` is there, or none for
-/// a class that we do not use, of which nothing but the class is known.
+/// An observation and where it stood. Exactly one of `imu`, `ins` and `observation` is there, or
+/// none for a class that we do not use, of which nothing but the class is known.
 struct LoggedObservation {
   std::string_view type;  ///< class without name spaces; valid until the next one is read
   std::optional<ImuRecord> imu;
+  std::optional<InsRecord> ins;              ///< where one is asked for
   mrpt::obs::CObservation::Ptr observation;  ///< GPS, odometry, robot pose, comment
   std::optional<int64_t> t_ns;
   int64_t record = 0;     ///< number of its top-level object, from 1
@@ -25,6 +26,7 @@ struct LoggedObservation {
 
   std::string_view label() const {
     if (imu) return imu->label;
+    if (ins) return ins->label;
     return observation ? std::string_view(observation->sensorLabel) : std::string_view();
   }
 };
@@ -49,8 +51,9 @@ class LastTwo {
 /// ends it: everything before it is given out.
 class RawlogStream {
  public:
+  /// CObservationGPS of `ins_label` that hold an INSPVAS alone are InsRecords.
   /// Throws DataError as InflatedFile.
-  explicit RawlogStream(const std::string& path);
+  explicit RawlogStream(const std::string& path, std::string ins_label = {});
 
   /// None at the end, and at a damage. Throws DataError if the file is no rawlog.
   std::optional<LoggedObservation> next();
@@ -70,6 +73,7 @@ class RawlogStream {
   std::optional<LoggedObservation> read_next();
   std::optional<LoggedObservation> read_object(const ObjectHeader& header, Bytes window);
   LoggedObservation read_imu_object(RecordCursor& cursor, int version);
+  LoggedObservation read_gps_object(RecordCursor& cursor, int version);
   LoggedObservation read_observation(RecordCursor& cursor, Reader read, int version);
   LoggedObservation begin_observation() const;
   void finish_object(size_t bytes);
@@ -86,6 +90,7 @@ class RawlogStream {
   std::string of_another_version(const UnknownVersion& error) const;
 
   std::string path_;
+  std::string ins_label_;
   InflatedFile file_;
   std::string object_;  ///< class of the object at hand
   bool in_frame_ = false;

@@ -11,6 +11,7 @@
 #include <mrpt/obs/CObservationRobotPose.h>
 #include <mrpt/obs/CSensoryFrame.h>
 #include <mrpt/obs/gnss_messages.h>
+#include <zlib.h>
 
 #include <functional>
 #include <random>
@@ -107,7 +108,7 @@ void expect_as_mrpt_reads(const std::string& bytes) {
   EXPECT_EQ(cursor.position(), size);
   EXPECT_EQ(record.label, imu->sensorLabel);
   EXPECT_EQ(record.t_ns, from_mrpt(imu->timestamp));
-  const mrpt::poses::CPose3D pose = pose_of(record);
+  const mrpt::poses::CPose3D pose = pose_of(record.pose);
   EXPECT_EQ(pose.getRotationMatrix(), imu->sensorPose.getRotationMatrix());
   EXPECT_EQ(pose.translation(), imu->sensorPose.translation());
   bool complete = true;
@@ -651,6 +652,37 @@ TEST(InflatedFiles, TellTheirEnd) {
   std::string wrong = packed;
   wrong[wrong.size() - 7] ^= 1;
   EXPECT_EQ(end(wrong), InflatedFile::End::damaged);
+}
+
+/// What zlib gives out of a gzip file of one member, whole or not.
+std::string by_zlib(std::string packed) {
+  z_stream stream{};
+  EXPECT_EQ(inflateInit2(&stream, 16 + MAX_WBITS), Z_OK);
+  stream.next_in = reinterpret_cast<unsigned char*>(packed.data());
+  stream.avail_in = static_cast<unsigned>(packed.size());
+  std::string bytes;
+  std::string piece(1000, ' ');
+  int result = Z_OK;
+  while (result == Z_OK) {
+    stream.next_out = reinterpret_cast<unsigned char*>(piece.data());
+    stream.avail_out = static_cast<unsigned>(piece.size());
+    result = inflate(&stream, Z_NO_FLUSH);
+    bytes.append(piece, 0, piece.size() - stream.avail_out);
+  }
+  inflateEnd(&stream);
+  return bytes;
+}
+
+TEST(InflatedFiles, GiveOutWhatIsBeforeABreakToTheLastByte) {
+  const Scratch scratch;
+  const std::string packed = gzipped(scratch, some_bytes(400'000));
+  for (const size_t at : {100, 5'000, 70'000, 150'000}) {
+    const std::string cut = packed.substr(0, at);
+    EXPECT_EQ(all_of(scratch.text_file("f", cut)), by_zlib(cut)) << at;
+    std::string wrong = packed;
+    for (size_t i = at; i < at + 64; ++i) wrong[i] = '\xFF';
+    EXPECT_EQ(all_of(scratch.text_file("f", wrong)), by_zlib(wrong)) << at;
+  }
 }
 
 }  // namespace

@@ -110,5 +110,45 @@ TEST(InstalledProgram, HasItsManualAndCompletions) {
   }
 }
 
+TEST(InstalledProgram, NeedsNeitherMrptNorOpencvToBegin) {
+  const TestFolder folder;
+  shell(folder, "ldd " FOUCAULT_PREFIX "/bin/foucault > libraries");
+  EXPECT_THAT(folder.lines("libraries").size(), Lt(45u));
+  EXPECT_THAT(folder.text("libraries"), Not(HasSubstr("mrpt")));
+  EXPECT_THAT(folder.text("libraries"), Not(HasSubstr("opencv")));
+}
+
+/// The installed program and its parts, moved to another place.
+class MovedProgram : public testing::Test {
+ protected:
+  MovedProgram() {
+    shell(folder_, "mkdir bin lib && cp " FOUCAULT_PREFIX
+                   "/bin/foucault bin && cp -r " FOUCAULT_PREFIX "/lib/foucault lib");
+    shell(folder_, "bin/foucault simulate -q --duration 60 --out trip.rawlog");
+  }
+
+  TestFolder folder_;
+};
+
+TEST_F(MovedProgram, FindsItsParts) {
+  shell(folder_, "bin/foucault run -q trip.rawlog --out run > output");
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "run/report/index.html"));
+}
+
+TEST_F(MovedProgram, SaysWhichPartIsMissing) {
+  const auto expect_missing = [&](const std::string& part) {
+    const std::string file = folder_ / ("lib/foucault/" + part + ".so");
+    std::filesystem::rename(file, file + ".off");
+    shell(folder_, "! bin/foucault run -q trip.rawlog --out run > output 2> errors");
+    std::filesystem::rename(file + ".off", file);
+    ASSERT_EQ(folder_.lines("errors").size(), 1U) << folder_.text("errors");
+    EXPECT_THAT(folder_.text("errors"), HasSubstr(part + ".so"));
+    EXPECT_THAT(folder_.text("errors"), HasSubstr("install foucault again"));
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "run"));
+  };
+  expect_missing("foucault_mrpt");
+  expect_missing("foucault_renderer");
+}
+
 }  // namespace
 }  // namespace foucault::test

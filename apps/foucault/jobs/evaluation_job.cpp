@@ -42,10 +42,6 @@ std::vector<std::string> recording_names(const std::vector<std::string>& logs) {
   return names;
 }
 
-std::unique_ptr<rawlog::RawlogSource> open_log(const std::string& log, const Settings& settings) {
-  return std::make_unique<rawlog::RawlogSource>(log, settings.imu.sample_kind(), settings.rawlog);
-}
-
 /// An estimator does not know where its measurements come from; whoever reads its errors should.
 template <class Work>
 auto naming_recording(const std::string& recording, Work work) {
@@ -75,26 +71,6 @@ class NamedEstimator : public state::Estimator {
  private:
   std::string name_;
   std::unique_ptr<state::Estimator> estimator_;
-};
-
-/// Keeps what the reader of a log has to say at its end.
-class RemarkingSource : public state::Source {
- public:
-  RemarkingSource(std::unique_ptr<rawlog::RawlogSource> source,
-                  std::shared_ptr<evaluation::SourceRemarks> remarks)
-      : source_(std::move(source)), remarks_(std::move(remarks)) {}
-
-  std::optional<Measurement> next() override {
-    std::optional<Measurement> measurement = source_->next();
-    if (!measurement) *remarks_ = {source_->notices(), source_->damage()};
-    return measurement;
-  }
-  const state::Mounting& mounting() const override { return source_->mounting(); }
-  double progress() const override { return source_->progress(); }
-
- private:
-  std::unique_ptr<rawlog::RawlogSource> source_;
-  std::shared_ptr<evaluation::SourceRemarks> remarks_;
 };
 
 void warn(const std::string& recording, const std::vector<state::Notice>& notices,
@@ -151,7 +127,8 @@ std::string label_of(const EvaluationCase& c) {
 
 }  // namespace
 
-evaluation::ExperimentRun experiment_run(const EvaluationCase& c, double shift_s) {
+evaluation::ExperimentRun experiment_run(const EvaluationCase& c, double shift_s,
+                                         const std::shared_ptr<SharedLogs>& logs) {
   const Method& method = find_method(c.method);
   c.settings->imu.noise();
   evaluation::ExperimentRun run;
@@ -163,8 +140,8 @@ evaluation::ExperimentRun experiment_run(const EvaluationCase& c, double shift_s
   run.needs_outage = is_least_shift(c.settings->outages, run.schedule);
   const auto remarks = std::make_shared<evaluation::SourceRemarks>();
   run.remarks = remarks;
-  run.open = [log = c.log, settings = c.settings, remarks] {
-    return std::make_unique<RemarkingSource>(open_log(log, *settings), remarks);
+  run.open = [logs, log = c.log, settings = c.settings, remarks] {
+    return logs->open(log, *settings, remarks);
   };
   run.make_estimator = [make = method.make, settings = c.settings, name = c.recording](
                            const state::Mounting& mounting, state::Sink& sink) {
@@ -177,13 +154,14 @@ evaluation::ExperimentRun experiment_run(const EvaluationCase& c, double shift_s
   return run;
 }
 
-std::vector<evaluation::ExperimentRun> experiment_runs(const EvaluationCase& c) {
+std::vector<evaluation::ExperimentRun> experiment_runs(const EvaluationCase& c,
+                                                       const std::shared_ptr<SharedLogs>& logs) {
   if (c.settings->outages.shifts_s.empty()) {
     throw UsageError("outages.shifts_s is empty; give at least one shift, such as [0]");
   }
   std::vector<evaluation::ExperimentRun> runs;
   for (const double shift_s : c.settings->outages.shifts_s) {
-    runs.push_back(experiment_run(c, shift_s));
+    runs.push_back(experiment_run(c, shift_s, logs));
   }
   return runs;
 }
@@ -368,7 +346,7 @@ class EvaluationRuns {
     c.imu = imu(place.c);
     c.settings = std::make_shared<const Settings>(
         settings_of(surveys_.text(surveys_.of_case(place.c)), c.settings->outages.shifts_s));
-    evaluation::ExperimentRun run = experiment_run(c, place.shift_s);
+    evaluation::ExperimentRun run = experiment_run(c, place.shift_s, logs_);
     run.with_track = tracks_[static_cast<std::size_t>(&place - places_.data())];
     return run;
   }
@@ -381,6 +359,7 @@ class EvaluationRuns {
   const std::vector<EvaluationCase>& cases_;
   RunStore& store_;
   Surveys surveys_;
+  std::shared_ptr<SharedLogs> logs_ = std::make_shared<SharedLogs>();
   std::vector<Shown> shown_;
   std::vector<Place> places_;
   mutable std::vector<bool> tracks_;
@@ -422,7 +401,9 @@ Ablation with_parts_off(const std::vector<EvaluationCase>& cases) {
   return ablation;
 }
 
-void check_log(const std::string& log, const Settings& settings) { open_log(log, settings); }
+void check_log(const std::string& log, const Settings& settings) {
+  rawlog::RawlogSource(log, settings.imu.sample_kind(), settings.rawlog);
+}
 
 Evaluation evaluate_what_is_there(const std::vector<EvaluationCase>& cases, RunStore& store,
                                   Console& console) {

@@ -8,6 +8,7 @@
 #include "console.h"
 #include "foucault/evaluation/experiment.h"
 #include "jobs/run_store.h"
+#include "jobs/shared_logs.h"
 #include "pages/evaluation_page.h"
 #include "settings.h"
 
@@ -40,9 +41,12 @@ struct Ablation {
 Ablation with_parts_off(const std::vector<EvaluationCase>& cases);
 
 /// The run of a case with one of its shifts. Throws UsageError for settings that make no sense.
-evaluation::ExperimentRun experiment_run(const EvaluationCase& evaluation_case, double shift_s);
+evaluation::ExperimentRun experiment_run(const EvaluationCase& evaluation_case, double shift_s,
+                                         const std::shared_ptr<SharedLogs>& logs);
 /// One a shift.
-std::vector<evaluation::ExperimentRun> experiment_runs(const EvaluationCase& evaluation_case);
+std::vector<evaluation::ExperimentRun> experiment_runs(
+    const EvaluationCase& evaluation_case,
+    const std::shared_ptr<SharedLogs>& logs = std::make_shared<SharedLogs>());
 
 /// Opens a log: what is missing or no rawlog shows before hours are spent on others.
 void check_log(const std::string& log, const Settings& settings);

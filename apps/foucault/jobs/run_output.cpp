@@ -44,6 +44,7 @@ void RunOutput::measurement(const Measurement& measurement) {
   if (report_ != nullptr) report_->measurement(measurement);
   if (const auto* fix = std::get_if<GnssFix>(&measurement)) {
     if (!metrics_) start_metrics(fix->t_ns);
+    reference_.fix();
   } else if (const auto* reference = std::get_if<ReferencePose>(&measurement)) {
     comparison_.add(*reference);
     reference_.add(*reference);

@@ -52,7 +52,7 @@ class PointMaker {
     const auto settings = std::make_shared<const Settings>(completed(log, point));
     const std::string text = store::hex(store::key_of(settings_text(*settings)));
     std::vector<evaluation::ExperimentRun> runs =
-        experiment_runs({log, log, settings->imu.preset, method, "", settings});
+        experiment_runs({log, log, settings->imu.preset, method, "", settings}, logs_);
     for (evaluation::ExperimentRun& run : runs) {
       run.with_track = false;
       run.depends_on = run_text(store_, contents_.at(log), method, run.shift_s, false, text);
@@ -77,6 +77,7 @@ class PointMaker {
   RunStore& store_;
   std::mutex mutex_;
   Surveyor surveyor_;
+  std::shared_ptr<SharedLogs> logs_ = std::make_shared<SharedLogs>();
   std::map<std::string, std::string> contents_;
 };
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "foucault/core/units.h"
 #include "foucault/export/solution_tum.h"
@@ -27,6 +28,21 @@ std::string identity_row(const ReferencePose& pose, const geodesy::LocalFrame& f
 }
 
 }  // namespace
+
+void ReferenceTum::add(const ReferencePose& pose) {
+  last_ = pose;
+  if (std::exchange(keeps_next_, false)) keep_last();
+}
+
+void ReferenceTum::fix() {
+  if (last_) keep_last();
+  keeps_next_ = true;
+}
+
+void ReferenceTum::keep_last() {
+  poses_.push_back(*last_);
+  last_.reset();
+}
 
 void ReferenceTum::finish() const {
   if (!origin_ || poses_.empty()) return;

@@ -22,7 +22,6 @@ namespace foucault::rawlog {
 /// MRPT counts 100 ns since 1601. None for MRPT's invalid stamp and outside the years 1950 to 2150.
 std::optional<int64_t> from_mrpt(mrpt::system::TTimeStamp t);
 mrpt::system::TTimeStamp to_mrpt(int64_t t_ns);
-bool in_range_of_stamps(int64_t t_ns);
 /// Nearest stamp that MRPT can hold.
 int64_t quantized(int64_t t_ns);
 

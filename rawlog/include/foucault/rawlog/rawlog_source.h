@@ -13,6 +13,8 @@
 
 namespace foucault::rawlog {
 
+class LogReading;
+
 /// Section `rawlog` of the configuration: what is taken from a log with several sensors.
 class RawlogOptions : public Configurable {
  public:
@@ -90,8 +92,7 @@ class RawlogSource : public state::Source {
   const std::optional<std::string>& damage() const;
 
  private:
-  class Impl;
-  std::unique_ptr<Impl> impl_;
+  std::unique_ptr<LogReading> reading_;
 };
 
 }  // namespace foucault::rawlog

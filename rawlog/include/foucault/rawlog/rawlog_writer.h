@@ -6,16 +6,26 @@
 #include <variant>
 
 #include "foucault/core/measurement.h"
+#include "foucault/core/time.h"
 #include "foucault/imu/increments.h"
 #include "foucault/rawlog/recording_notes.h"
 #include "foucault/state/interfaces.h"
 
 namespace foucault::rawlog {
 
+class LogWriting;
+
 /// What a rawlog can hold of ours. Event requests are not written.
 using Record = std::variant<GnssFix, WheelSpeed, ReferencePose, imu::ImuSample, ImuIncrement>;
 
 int64_t stamp(const Record& record);
+
+/// Stamps of 1950 to 2150: differences between them fit into int64 nanoseconds.
+constexpr int64_t kEarliestStamp = -631'152'000 * kNanosecondsPerSecond;
+constexpr int64_t kLatestStamp = 5'680'281'600 * kNanosecondsPerSecond;
+constexpr bool in_range_of_stamps(int64_t t_ns) {
+  return t_ns >= kEarliestStamp && t_ns <= kLatestStamp;
+}
 
 enum class WrittenValues {
   finite,  ///< others are refused
@@ -60,8 +70,7 @@ class RawlogWriter {
   void finish();
 
  private:
-  class Impl;
-  std::unique_ptr<Impl> impl_;
+  std::unique_ptr<LogWriting> writing_;
 };
 
 }  // namespace foucault::rawlog

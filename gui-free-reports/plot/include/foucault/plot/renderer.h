@@ -18,6 +18,8 @@ struct Fonts {
 /// where Debian keeps it. Throws DataError if there is none, naming the package to install.
 Fonts find_fonts();
 
+class Drawing;
+
 /// Draws figures without a display: 8 pixels a millimetre (203 dpi), anti-aliased.
 /// The same figure gives the same bytes. One renderer serves one thread.
 class Renderer {
@@ -33,8 +35,7 @@ class Renderer {
   std::string svg(const Figure& figure);
 
  private:
-  class Implementation;
-  std::unique_ptr<Implementation> implementation_;
+  std::unique_ptr<Drawing> drawing_;
 };
 
 }  // namespace foucault::plot

@@ -1,5 +1,3 @@
-#include "foucault/rawlog/rawlog_info.h"
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -7,6 +5,7 @@
 #include "foucault/core/hole.h"
 #include "foucault/imu/burst_stamps.h"
 #include "foucault/rawlog/mrpt_convert.h"
+#include "mrpt_entries.h"
 #include "notes_comment.h"
 #include "rawlog_stream.h"
 
@@ -202,12 +201,12 @@ class Collector {
   void add_imu(const rawlog::ImuRecord& imu) {
     has_accel_ = has_accel_ || imu.accel_b;
     if (imu.gyro_b && !gyro_pose_) {
-      gyro_pose_ = rawlog::from_mrpt(rawlog::pose_of(imu));
+      gyro_pose_ = rawlog::from_mrpt(rawlog::pose_of(imu.pose));
       gyro_label_ = imu.label;
     }
     if (!imu.sample) return;
     if (!imu_pose_) {
-      imu_pose_ = rawlog::from_mrpt(rawlog::pose_of(imu));
+      imu_pose_ = rawlog::from_mrpt(rawlog::pose_of(imu.pose));
       info_.imu_label = imu.label;
       info_.mounting = state::Mounting{imu_pose_->q_v_s};
     }
@@ -263,7 +262,7 @@ class Collector {
 
 }  // namespace
 
-RawlogInfo read_rawlog_info(const std::string& path, const std::function<void(double)>& progress) {
+RawlogInfo mrpt_info(const std::string& path, const std::function<void(double)>& progress) {
   constexpr int64_t kObservationsPerReport = 2000;
   RawlogInfo info;
   rawlog::RawlogStream stream(path);

@@ -1,5 +1,3 @@
-#include "foucault/rawlog/rawlog_source.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -18,24 +16,14 @@
 #include "foucault/imu/increments.h"
 #include "foucault/imu/recent_rates.h"
 #include "foucault/rawlog/mrpt_convert.h"
-#include "foucault/rawlog/recording_notes.h"
 #include "imu_halves.h"
+#include "mrpt_entries.h"
 #include "notes_comment.h"
 #include "rawlog_stream.h"
 
 namespace foucault::rawlog {
 
 using rawlog::LoggedObservation;
-
-void RawlogOptions::fields(ConfigFields& f) {
-  constexpr double kLongestReorder = 1e6;
-  f.text("imu_label", imu_label, {}, "sensor label of the IMU; empty: the first one");
-  f.text("gnss_label", gnss_label, {},
-         "sensor label of the GNSS receiver; empty: the first one with a position");
-  f.text("reference_label", reference_label, {}, "sensor label of the reference trajectory");
-  f.number("reorder_s", reorder_s, {0, kLongestReorder}, "records may come this late [s]");
-  f.replaced("gnss_velocity", "aids.gnss_velocity (on | off), or aids.mode (none)");
-}
 
 namespace {
 
@@ -85,7 +73,7 @@ class OverviewScan {
       : path_(path), options_(options) {}
 
   Overview run() {
-    rawlog::RawlogStream stream(path_);
+    rawlog::RawlogStream stream(path_, options_.reference_label);
     while (!(imu_found_ && gnss_found_)) {
       const std::optional<LoggedObservation> logged = stream.next();
       if (!logged) {
@@ -116,7 +104,7 @@ class OverviewScan {
     constexpr int kSoon = 200;
     if (imu.sample || (imu.gyro_b && !gyro_found_)) {
       overview_.imu_label = imu.label;
-      overview_.imu = rawlog::from_mrpt(rawlog::pose_of(imu));
+      overview_.imu = rawlog::from_mrpt(rawlog::pose_of(imu.pose));
     }
     if (imu.accel_b && !accel_found_) overview_.accel_label = imu.label;
     gyro_found_ = gyro_found_ || imu.gyro_b;
@@ -185,35 +173,34 @@ bool same(const imu::ImuSample& a, const imu::ImuSample& b) {
   return a.t_ns == b.t_ns && a.gyro_b == b.gyro_b && a.accel_b == b.accel_b;
 }
 
-}  // namespace
-
-class RawlogSource::Impl {
+class MrptReading final : public LogReading {
  public:
-  Impl(const std::string& path, imu::SampleKind samples, const RawlogOptions& options)
+  MrptReading(const std::string& path, imu::SampleKind samples, const RawlogOptions& options)
       : path_(path),
         options_(options),
         reorder_ns_(nanoseconds(options.reorder_s)),
         fix_delay_ns_(nanoseconds(options.fix_delay_s)),
         overview_(OverviewScan(path, options).run()),
-        lever_arm_told_(read_notes(path).lever_arm),
+        lever_arm_told_(mrpt_notes(path).lever_arm),
         mounting_{overview_.imu.q_v_s},
         lever_arm_(lever_arm_to(overview_.antenna)),
-        stream_(path),
+        stream_(path, options.reference_label),
         incrementer_(samples) {}
 
-  std::optional<Measurement> next() {
+  std::optional<Measurement> next() override {
     while (!over_ && !settled()) read_one();
     return take_earliest();
   }
 
-  std::vector<state::Notice> notices() const;
+  std::vector<state::Notice> notices() const override;
 
-  const state::Mounting& mounting() const { return mounting_; }
-  const Eigen::Vector3d& lever_arm() const { return lever_arm_; }
-  const Overview& overview() const { return overview_; }
-  const SourceCounts& counts() const { return counts_; }
-  const std::optional<std::string>& damage() const { return stream_.damage(); }
-  double progress() const { return stream_.progress(); }
+  const state::Mounting& mounting() const override { return mounting_; }
+  const Eigen::Vector3d& lever_arm() const override { return lever_arm_; }
+  const std::string& imu_label() const override { return overview_.imu_label; }
+  const std::string& gnss_label() const override { return overview_.gnss_label; }
+  const SourceCounts& counts() const override { return counts_; }
+  const std::optional<std::string>& damage() const override { return stream_.damage(); }
+  double progress() const override { return stream_.progress(); }
 
  private:
   Eigen::Vector3d lever_arm_to(const rawlog::SensorPose& antenna) const {
@@ -235,7 +222,8 @@ class RawlogSource::Impl {
   void convert(const imu::ImuSample& sample, int64_t stamp_ns);
   void take_gps(const mrpt::obs::CObservationGPS& gps, int64_t t_ns);
   void take_velocity(const mrpt::obs::CObservationGPS& gps, int64_t t_ns);
-  void take_reference(const ReferencePose& pose, const mrpt::poses::CPose3D& sensor_pose,
+  const rawlog::SensorPose& pose_of(const rawlog::InsRecord& ins);
+  void take_reference(const ReferencePose& pose, const rawlog::SensorPose& from,
                       std::string_view type);
   void take_odometry(const mrpt::obs::CObservationOdometry& odometry, int64_t t_ns);
   /// False if it comes too late to be put in order.
@@ -271,8 +259,10 @@ class RawlogSource::Impl {
   std::deque<ImuIncrement> increments_;
   std::multimap<int64_t, Measurement> others_;
   std::map<int64_t, rawlog::GroundVelocity> waiting_velocities_;  ///< their fixes are still to come
-  Eigen::Vector3d reference_arm_v_ = Eigen::Vector3d::Zero();     ///< reference to IMU
-  imu::RecentRates rates_{imu::kLeverArmRateMemory};              ///< of what was released
+  std::vector<unsigned char> ins_pose_bytes_;                     ///< of the InsRecord before
+  rawlog::SensorPose ins_pose_;
+  Eigen::Vector3d reference_arm_v_ = Eigen::Vector3d::Zero();  ///< reference to IMU
+  imu::RecentRates rates_{imu::kLeverArmRateMemory};           ///< of what was released
   int64_t newest_imu_ns_ = std::numeric_limits<int64_t>::min();
   int64_t released_ns_ = std::numeric_limits<int64_t>::min();
   int64_t released_increment_ns_ = std::numeric_limits<int64_t>::min();
@@ -283,7 +273,7 @@ class RawlogSource::Impl {
   bool over_ = false;
 };
 
-bool RawlogSource::Impl::settled() const {
+bool MrptReading::settled() const {
   int64_t earliest_ns = std::numeric_limits<int64_t>::max();
   if (!increments_.empty()) earliest_ns = increments_.front().t_end_ns;
   if (!others_.empty()) earliest_ns = std::min(earliest_ns, others_.begin()->first);
@@ -291,7 +281,7 @@ bool RawlogSource::Impl::settled() const {
          earliest_ns <= newest_imu_ns_ - reorder_ns_;
 }
 
-std::optional<Measurement> RawlogSource::Impl::take_earliest() {
+std::optional<Measurement> MrptReading::take_earliest() {
   const bool other_first =
       !others_.empty() &&
       (increments_.empty() || others_.begin()->first <= increments_.front().t_end_ns);
@@ -312,18 +302,18 @@ std::optional<Measurement> RawlogSource::Impl::take_earliest() {
 }
 
 /// The Earth's rate and the gyroscopes' biases are left in: 1 mm/s for an arm of 2 m.
-void RawlogSource::Impl::swing(ReferencePose& pose) const {
+void MrptReading::swing(ReferencePose& pose) const {
   if (!pose.velocity_n || !pose.q_n_v || reference_arm_v_.squaredNorm() == 0) return;
   const Eigen::Vector3d omega_v = mounting_.q_v_b * rates_.gyro_b;
   *pose.velocity_n += *pose.q_n_v * omega_v.cross(reference_arm_v_);
 }
 
-void RawlogSource::Impl::read_one() {
+void MrptReading::read_one() {
   const std::optional<LoggedObservation> logged = stream_.next();
   if (!logged) {
     over_ = true;
     end();
-  } else if (!logged->imu && !logged->observation) {
+  } else if (!logged->imu && !logged->ins && !logged->observation) {
     skip(logged->type);
   } else if (!logged->t_ns) {
     skip(logged->type, "no stamp");
@@ -332,8 +322,11 @@ void RawlogSource::Impl::read_one() {
   }
 }
 
-void RawlogSource::Impl::dispatch(const LoggedObservation& logged, int64_t t_ns) {
+void MrptReading::dispatch(const LoggedObservation& logged, int64_t t_ns) {
   if (logged.imu) return take_imu(*logged.imu, logged.record, t_ns);
+  if (logged.ins) {
+    return take_reference(rawlog::decode_reference(*logged.ins, t_ns), pose_of(*logged.ins), kGps);
+  }
   if (const auto* gps = as_gps(logged)) return take_gps(*gps, t_ns);
   const mrpt::obs::CObservation* observation = logged.observation.get();
   if (const auto* odometry = dynamic_cast<const mrpt::obs::CObservationOdometry*>(observation)) {
@@ -342,12 +335,12 @@ void RawlogSource::Impl::dispatch(const LoggedObservation& logged, int64_t t_ns)
   const auto* pose = dynamic_cast<const mrpt::obs::CObservationRobotPose*>(observation);
   if (pose != nullptr && pose->sensorLabel == options_.reference_label) {
     return take_reference(rawlog::decode_reference(*pose, overview_.first_fix, t_ns),
-                          pose->sensorPose, logged.type);
+                          rawlog::from_mrpt(pose->sensorPose), logged.type);
   }
   if (notes_comment(logged) == nullptr) skip(logged.type);
 }
 
-void RawlogSource::Impl::take_imu(const rawlog::ImuRecord& imu, int64_t record, int64_t t_ns) {
+void MrptReading::take_imu(const rawlog::ImuRecord& imu, int64_t record, int64_t t_ns) {
   if (overview_.imu_halves) return take_half(imu, record, t_ns);
   if (imu.label != overview_.imu_label) return skip(kImu, "another label");
   if (!imu.sample) return skip(kImu, "no gyroscope or no accelerometer");
@@ -357,7 +350,7 @@ void RawlogSource::Impl::take_imu(const rawlog::ImuRecord& imu, int64_t record, 
   take_sample(sample, record);
 }
 
-void RawlogSource::Impl::take_half(const rawlog::ImuRecord& imu, int64_t record, int64_t t_ns) {
+void MrptReading::take_half(const rawlog::ImuRecord& imu, int64_t record, int64_t t_ns) {
   const std::optional<Eigen::Vector3d>& half = imu.gyro_b ? imu.gyro_b : imu.accel_b;
   const std::string& label = imu.gyro_b ? overview_.imu_label : overview_.accel_label;
   if (!half || imu.label != label) return skip(kImu, "another label");
@@ -372,7 +365,7 @@ void RawlogSource::Impl::take_half(const rawlog::ImuRecord& imu, int64_t record,
 }
 
 /// A stamp far ahead is a hole if the next goes on from there, else a slip of the clock.
-void RawlogSource::Impl::take_sample(const imu::ImuSample& sample, int64_t record) {
+void MrptReading::take_sample(const imu::ImuSample& sample, int64_t record) {
   if (const std::optional<imu::ImuSample> ahead = std::exchange(ahead_, std::nullopt)) {
     if (sample.t_ns >= ahead->t_ns) {
       put_in_order(*ahead, record);
@@ -389,7 +382,7 @@ void RawlogSource::Impl::take_sample(const imu::ImuSample& sample, int64_t recor
   }
 }
 
-void RawlogSource::Impl::put_in_order(const imu::ImuSample& sample, int64_t record) {
+void MrptReading::put_in_order(const imu::ImuSample& sample, int64_t record) {
   if (last_sample_ && sample.t_ns <= last_sample_->t_ns) {
     if (same(sample, *last_sample_)) {
       ++counts_.imu_duplicates;
@@ -413,7 +406,7 @@ void RawlogSource::Impl::put_in_order(const imu::ImuSample& sample, int64_t reco
   convert_until(newest_imu_ns_ - reorder_ns_);
 }
 
-void RawlogSource::Impl::convert_until(int64_t t_ns) {
+void MrptReading::convert_until(int64_t t_ns) {
   while (true) {
     const std::vector<int64_t>& stamps = even_stamps_.take(samples_, t_ns);
     if (stamps.empty()) return;
@@ -424,7 +417,7 @@ void RawlogSource::Impl::convert_until(int64_t t_ns) {
   }
 }
 
-void RawlogSource::Impl::convert(const imu::ImuSample& sample, int64_t stamp_ns) {
+void MrptReading::convert(const imu::ImuSample& sample, int64_t stamp_ns) {
   last_sample_ = sample;
   if (last_stamp_ns_ && stamp_ns <= *last_stamp_ns_) {
     --counts_.imu_samples;
@@ -438,11 +431,11 @@ void RawlogSource::Impl::convert(const imu::ImuSample& sample, int64_t stamp_ns)
   }
 }
 
-void RawlogSource::Impl::take_gps(const mrpt::obs::CObservationGPS& gps, int64_t t_ns) {
+void MrptReading::take_gps(const mrpt::obs::CObservationGPS& gps, int64_t t_ns) {
   if (gps.sensorLabel == options_.reference_label) {
     const std::optional<ReferencePose> pose = rawlog::decode_reference(gps, t_ns);
     if (!pose) return skip(kGps, "reference without INSPVAS");
-    return take_reference(*pose, gps.sensorPose, kGps);
+    return take_reference(*pose, rawlog::from_mrpt(gps.sensorPose), kGps);
   }
   if (receiver_of(gps.sensorLabel) != receiver_of(overview_.gnss_label)) {
     return skip(kGps, "another label");
@@ -476,7 +469,7 @@ void RawlogSource::Impl::take_gps(const mrpt::obs::CObservationGPS& gps, int64_t
 }
 
 /// Of a sentence that was logged apart from its position.
-void RawlogSource::Impl::take_velocity(const mrpt::obs::CObservationGPS& gps, int64_t t_ns) {
+void MrptReading::take_velocity(const mrpt::obs::CObservationGPS& gps, int64_t t_ns) {
   const std::optional<rawlog::GroundVelocity> velocity = rawlog::decode_velocity(gps);
   if (!velocity) return skip(kGps, "no position");
   const int64_t fix_ns = t_ns - fix_delay_ns_;
@@ -492,24 +485,31 @@ void RawlogSource::Impl::take_velocity(const mrpt::obs::CObservationGPS& gps, in
   if (waiting_velocities_.size() > kMost) waiting_velocities_.erase(waiting_velocities_.begin());
 }
 
-void RawlogSource::Impl::take_reference(const ReferencePose& pose,
-                                        const mrpt::poses::CPose3D& sensor_pose,
-                                        std::string_view type) {
-  const rawlog::SensorPose from = rawlog::from_mrpt(sensor_pose);
+/// It is the same in all records, as a rule.
+const rawlog::SensorPose& MrptReading::pose_of(const rawlog::InsRecord& ins) {
+  const Bytes& bytes = ins.pose;
+  if (!std::equal(bytes.begin, bytes.end, ins_pose_bytes_.begin(), ins_pose_bytes_.end())) {
+    ins_pose_bytes_.assign(bytes.begin, bytes.end);
+    ins_pose_ = rawlog::from_mrpt(rawlog::pose_of(bytes));
+  }
+  return ins_pose_;
+}
+
+void MrptReading::take_reference(const ReferencePose& pose, const rawlog::SensorPose& from,
+                                 std::string_view type) {
   const ReferencePose of_imu = rawlog::moved_to_imu(pose, from, overview_.imu.p_v_s);
   reference_arm_v_ = overview_.imu.p_v_s - from.p_v_s;
   if (!is_finite(of_imu.position)) return skip_noted(type, kNotFinite, pose.t_ns);
   if (add(of_imu)) ++counts_.references;
 }
 
-void RawlogSource::Impl::take_odometry(const mrpt::obs::CObservationOdometry& odometry,
-                                       int64_t t_ns) {
+void MrptReading::take_odometry(const mrpt::obs::CObservationOdometry& odometry, int64_t t_ns) {
   if (!odometry.hasVelocities) return skip(kOdometry, "no velocity");
   if (!std::isfinite(odometry.velocityLocal.vx)) return skip_noted(kOdometry, kNotFinite, t_ns);
   if (add(WheelSpeed{t_ns, odometry.velocityLocal.vx})) ++counts_.wheel_speeds;
 }
 
-bool RawlogSource::Impl::add(const Measurement& measurement) {
+bool MrptReading::add(const Measurement& measurement) {
   const int64_t t_ns = stamp(measurement);
   if (t_ns < released_ns_ || t_ns <= released_increment_ns_) {
     ++counts_.late;
@@ -520,18 +520,18 @@ bool RawlogSource::Impl::add(const Measurement& measurement) {
   return true;
 }
 
-void RawlogSource::Impl::skip(std::string_view type, std::string_view reason) {
+void MrptReading::skip(std::string_view type, std::string_view reason) {
   ++counts_.skipped[reason.empty() ? std::string(type) : fmt::format("{} ({})", type, reason)];
 }
 
-void RawlogSource::Impl::skip_noted(std::string_view type, std::string_view reason, int64_t t_ns) {
+void MrptReading::skip_noted(std::string_view type, std::string_view reason, int64_t t_ns) {
   const std::string name = fmt::format("{} ({})", type, reason);
   ++counts_.skipped[name];
   first_skipped_ns_.emplace(name, t_ns);
 }
 
 /// A few are a recorder's hiccup; many in a row are a log that is not in order.
-void RawlogSource::Impl::skip_backward(int64_t record, int64_t t_ns) {
+void MrptReading::skip_backward(int64_t record, int64_t t_ns) {
   constexpr int kMostInARow = 100;
   if (++backward_in_a_row_ > kMostInARow) {
     fail(record, t_ns,
@@ -543,7 +543,7 @@ void RawlogSource::Impl::skip_backward(int64_t record, int64_t t_ns) {
   skip_noted(kImu, "comes too late", t_ns);
 }
 
-void RawlogSource::Impl::end() {
+void MrptReading::end() {
   if (halves_.alone() > 0) counts_.skipped["CObservationIMU (no force near it)"] = halves_.alone();
   if (ahead_) put_in_order(*ahead_, stream_.records());
   convert_until(std::numeric_limits<int64_t>::max());
@@ -552,7 +552,7 @@ void RawlogSource::Impl::end() {
   check_overlap();
 }
 
-void RawlogSource::Impl::check_overlap() const {
+void MrptReading::check_overlap() const {
   if (imu_span_.empty() || fix_span_.empty()) {
     throw DataError(fmt::format("'{}': no {} of it is finite; see `foucault info`", path_,
                                 imu_span_.empty() ? "IMU sample" : "GNSS fix"));
@@ -571,11 +571,11 @@ void RawlogSource::Impl::check_overlap() const {
       utc_text(fix_span_.last_ns), describe_mismatch(later_s)));
 }
 
-void RawlogSource::Impl::fail(int64_t record, int64_t t_ns, const std::string& what) const {
+void MrptReading::fail(int64_t record, int64_t t_ns, const std::string& what) const {
   throw DataError(fmt::format("'{}': record {} at {}: {}", path_, record, utc_text(t_ns), what));
 }
 
-std::vector<state::Notice> RawlogSource::Impl::notices() const {
+std::vector<state::Notice> MrptReading::notices() const {
   std::vector<state::Notice> notices;
   if (overview_.by_rmc) {
     notices.push_back({fix_span_.first_ns, state::NoticeKind::skipped,
@@ -613,20 +613,11 @@ std::vector<state::Notice> RawlogSource::Impl::notices() const {
   return notices;
 }
 
-RawlogSource::RawlogSource(const std::string& path, imu::SampleKind samples,
-                           const RawlogOptions& options)
-    : impl_(std::make_unique<Impl>(path, samples, options)) {}
-RawlogSource::~RawlogSource() = default;
-RawlogSource::RawlogSource(RawlogSource&&) noexcept = default;
+}  // namespace
 
-std::optional<Measurement> RawlogSource::next() { return impl_->next(); }
-const state::Mounting& RawlogSource::mounting() const { return impl_->mounting(); }
-double RawlogSource::progress() const { return impl_->progress(); }
-const Eigen::Vector3d& RawlogSource::lever_arm() const { return impl_->lever_arm(); }
-const std::string& RawlogSource::imu_label() const { return impl_->overview().imu_label; }
-const std::string& RawlogSource::gnss_label() const { return impl_->overview().gnss_label; }
-const SourceCounts& RawlogSource::counts() const { return impl_->counts(); }
-std::vector<state::Notice> RawlogSource::notices() const { return impl_->notices(); }
-const std::optional<std::string>& RawlogSource::damage() const { return impl_->damage(); }
+std::unique_ptr<LogReading> mrpt_reading(const std::string& path, imu::SampleKind samples,
+                                         const RawlogOptions& options) {
+  return std::make_unique<MrptReading>(path, samples, options);
+}
 
 }  // namespace foucault::rawlog

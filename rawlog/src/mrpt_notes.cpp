@@ -1,19 +1,12 @@
-#include "foucault/rawlog/recording_notes.h"
-
 #include <fmt/format.h>
 
 #include "foucault/core/error.h"
+#include "mrpt_entries.h"
 #include "notes_comment.h"
 
 namespace foucault::rawlog {
 
-void RecordingNotes::fields(ConfigFields& f) {
-  f.text("lever_arm", lever_arm, {"not_told", "given", "unknown"},
-         "whether the antenna's place was known when the log was made");
-  f.section("imu", imu, "as section imu of the configuration");
-}
-
-RecordingNotes read_notes(const std::string& path) {
+RecordingNotes mrpt_notes(const std::string& path) {
   RecordingNotes notes;
   RawlogStream stream(path);
   const std::optional<LoggedObservation> first = stream.next();

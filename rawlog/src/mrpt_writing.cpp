@@ -1,5 +1,3 @@
-#include "foucault/rawlog/rawlog_writer.h"
-
 #include <fmt/format.h>
 
 #include <cmath>
@@ -11,13 +9,10 @@
 #include "foucault/core/time.h"
 #include "foucault/rawlog/mrpt_convert.h"
 #include "gz_archive.h"
+#include "mrpt_entries.h"
 #include "notes_comment.h"
 
 namespace foucault::rawlog {
-
-int64_t stamp(const Record& record) {
-  return std::visit([](const auto& value) { return foucault::stamp(value); }, record);
-}
 
 namespace {
 
@@ -46,9 +41,9 @@ imu::ImuSample mean_rates(const ImuIncrement& increment) {
 
 }  // namespace
 
-class RawlogWriter::Impl {
+class MrptWriting final : public LogWriting {
  public:
-  Impl(const std::string& path, const state::Mounting& mounting, WrittenValues values)
+  MrptWriting(const std::string& path, const state::Mounting& mounting, WrittenValues values)
       : file_(path), archive_(file_), mounting_(mounting), values_(values) {
     imu_.sensorLabel = "IMU";
     imu_.sensorPose = rawlog::to_mrpt({mounting.q_v_b, Eigen::Vector3d::Zero()});
@@ -58,13 +53,14 @@ class RawlogWriter::Impl {
     odometry_.hasVelocities = true;
   }
 
-  void write(RecordingNotes notes) {
+  void write(const RecordingNotes& told) override {
+    RecordingNotes notes = told;  // its fields are visited
     notes_.emplace();
     notes_->sensorLabel = "FOUCAULT";
     notes_->text = kNotesTitle + dump_config(notes);
   }
 
-  void write(const imu::ImuSample& sample) {
+  void write(const imu::ImuSample& sample) override {
     require_stamp(sample.t_ns);
     require(sample.gyro_b.allFinite() && sample.accel_b.allFinite(), "the IMU sample", sample.t_ns);
     rawlog::encode_imu(sample, imu_);
@@ -72,13 +68,13 @@ class RawlogWriter::Impl {
     imu_begun_ = true;
   }
 
-  void write(const ImuIncrement& increment) {
+  void write(const ImuIncrement& increment) override {
     const imu::ImuSample sample = mean_rates(increment);
     if (!imu_begun_) write(imu::ImuSample{increment.t_begin_ns, sample.gyro_b, sample.accel_b});
     write(sample);
   }
 
-  void write(const GnssFix& fix) {
+  void write(const GnssFix& fix) override {
     require_stamp(fix.t_ns);
     require(is_finite(fix.antenna) && fix.position_covariance.allFinite() &&
                 (!fix.velocity_n ||
@@ -92,7 +88,7 @@ class RawlogWriter::Impl {
     put(gnss_);
   }
 
-  void write(const ReferencePose& pose) {
+  void write(const ReferencePose& pose) override {
     require_stamp(pose.t_ns);
     require(is_finite(pose.position), "the reference pose", pose.t_ns);
     reference_.timestamp = rawlog::to_mrpt(pose.t_ns);
@@ -101,7 +97,7 @@ class RawlogWriter::Impl {
     put(reference_);
   }
 
-  void write(const WheelSpeed& speed) {
+  void write(const WheelSpeed& speed) override {
     require_stamp(speed.t_ns);
     require(std::isfinite(speed.forward), "the wheel speed", speed.t_ns);
     odometry_.timestamp = rawlog::to_mrpt(speed.t_ns);
@@ -109,7 +105,7 @@ class RawlogWriter::Impl {
     put(odometry_);
   }
 
-  void finish() {
+  void finish() override {
     archive_.close();
     file_.commit();
   }
@@ -150,33 +146,9 @@ class RawlogWriter::Impl {
   bool imu_begun_ = false;
 };
 
-RawlogWriter::RawlogWriter(const std::string& path, const state::Mounting& mounting,
-                           WrittenValues values)
-    : impl_(std::make_unique<Impl>(path, mounting, values)) {}
-RawlogWriter::~RawlogWriter() = default;
-RawlogWriter::RawlogWriter(RawlogWriter&&) noexcept = default;
-
-void RawlogWriter::write(const RecordingNotes& notes) { impl_->write(notes); }
-void RawlogWriter::write(const imu::ImuSample& sample) { impl_->write(sample); }
-void RawlogWriter::write(const ImuIncrement& increment) { impl_->write(increment); }
-void RawlogWriter::write(const GnssFix& fix) { impl_->write(fix); }
-void RawlogWriter::write(const ReferencePose& pose) { impl_->write(pose); }
-void RawlogWriter::write(const WheelSpeed& speed) { impl_->write(speed); }
-
-void RawlogWriter::write(const Record& record) {
-  std::visit([this](const auto& value) { impl_->write(value); }, record);
+std::unique_ptr<LogWriting> mrpt_writing(const std::string& path, const state::Mounting& mounting,
+                                         WrittenValues values) {
+  return std::make_unique<MrptWriting>(path, mounting, values);
 }
-
-void RawlogWriter::write(const Measurement& measurement) {
-  std::visit(
-      [this](const auto& value) {
-        if constexpr (!std::is_same_v<std::decay_t<decltype(value)>, EpochRequest>) {
-          impl_->write(value);
-        }
-      },
-      measurement);
-}
-
-void RawlogWriter::finish() { impl_->finish(); }
 
 }  // namespace foucault::rawlog
