@@ -1,5 +1,6 @@
 #include "foucault/fgo/batch_solver.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -27,6 +28,9 @@ constexpr double kCostShareLeft = 1e-7;
 /// A thousandth of a sigma.
 constexpr double kCostLeft = 1e-6;
 
+/// Share of a sigma that does not count.
+constexpr double kInfluenceLeft = 1e-2;
+
 /// Levenberg and Marquardt's radius, as Ceres has it: what is known of a column by itself, over it,
 /// is added to what is known of all.
 struct TrustRegion {
@@ -42,6 +46,37 @@ struct TrustRegion {
       shrink *= 2;
     }
   }
+};
+
+/// How far the end of a chain reaches back, the border given: see solve_settled().
+class Reach {
+ public:
+  explicit Reach(const NodeInformation& end)
+      : W_(end.S.topLeftCorner<state::kNodeSize, state::kNodeSize>()
+               .triangularView<Eigen::Upper>()
+               .solve(state::NodeMatrix::Identity())),
+        P_(W_ * W_.transpose()) {}
+
+  void go_back(const Conditional& node) {
+    const auto R = node.R.triangularView<Eigen::Upper>();
+    const state::NodeMatrix F = -R.solve(state::NodeMatrix(node.A.leftCols<state::kNodeSize>()));
+    const state::NodeMatrix root = R.solve(state::NodeMatrix::Identity());
+    W_ = F * W_;
+    P_ = root * root.transpose() + F * P_ * F.transpose();
+  }
+
+  bool has_faded() const { return is_below(kInfluenceLeft); }
+
+  /// Further back it will not rise again.
+  bool is_over() const { return is_below(1e-4 * kInfluenceLeft); }
+
+ private:
+  bool is_below(double share) const {
+    return (W_.rowwise().squaredNorm().array() <= share * share * P_.diagonal().array()).all();
+  }
+
+  state::NodeMatrix W_;
+  state::NodeMatrix P_;  ///< of the node, the border given
 };
 
 /// The chain at its states, and the search for better ones.
@@ -64,6 +99,7 @@ class BatchSolver {
   bool renew_factors(const imu::ImuNoise& noise);
 
   BatchSolution solution();
+  BatchSolution settled();
 
  private:
   struct States {
@@ -96,6 +132,8 @@ class BatchSolver {
   Front sweep();
   template <class Each>
   void go_back(const Each& each);
+
+  void take_off(std::size_t nodes);
 
   bool reintegrate_turned(std::size_t k, const imu::ImuNoise& noise);
   bool move_earth(std::size_t k);
@@ -325,14 +363,87 @@ BatchSolution BatchSolver::solution() {
   return {std::move(at_.x), at_.slow, std::move(covariances)};
 }
 
+BatchSolution BatchSolver::settled() {
+  const StageTimer timer(Stage::covariance);
+  next_ = {};
+  std::vector<state::PackedSymmetric> covariances;
+  const Front end = sweep();
+  state::StateMatrix P = covariance(end.information);
+  Reach reach(end.information);
+  go_back([&](std::size_t k, const Pivot& pivot) {
+    P = pivot.covariance(P);
+    if (!reach.is_over()) {
+      reach.go_back(pivot);
+      if (!reach.has_faded()) covariances.clear();
+      if (reach.has_faded() && covariances.empty()) return covariances.resize(k);
+    }
+    if (!covariances.empty()) covariances[k] = state::PackedSymmetric(P);
+  });
+  const auto nodes = static_cast<std::ptrdiff_t>(covariances.size());
+  BatchSolution out{{at_.x.begin(), at_.x.begin() + nodes}, at_.slow, std::move(covariances)};
+  take_off(out.x.size());
+  return out;
+}
+
+/// What they know, with the observations of the next, becomes its prior.
+void BatchSolver::take_off(std::size_t nodes) {
+  if (nodes == 0) return;
+  Front front = first_front();
+  for (std::size_t k = 0; k < nodes; ++k) advance(k, front);
+  chain_.prior = to_prior(front.information, at_.x[nodes], at_.slow);
+  const auto gone = static_cast<std::ptrdiff_t>(nodes);
+  chain_.nodes.erase(chain_.nodes.begin(), chain_.nodes.begin() + gone);
+  chain_.intervals.erase(chain_.intervals.begin(), chain_.intervals.begin() + gone);
+  chain_.nodes.front().observations.clear();
+  for (std::size_t k = 0; k < chain_.nodes.size(); ++k) chain_.nodes[k].x = at_.x[nodes + k];
+}
+
+void minimize(BatchSolver& solver, const imu::ImuNoise& noise) {
+  solver.optimize();
+  for (int round = 0; round < kRounds && solver.renew_factors(noise); ++round) solver.optimize();
+}
+
 }  // namespace
+
+BorderEstimate border_of(const BatchSolution& solution) {
+  const Eigen::Index slow = solution.slow.size();
+  return {solution.slow, solution.covariance_w.front().full().bottomRightCorner(slow, slow)};
+}
+
+void take_border(BatchSolution& solution, const BorderEstimate& known) {
+  const Eigen::Index slow = known.value.size();
+  if (slow == 0 || solution.x.empty()) return;
+  const BorderEstimate own = border_of(solution);
+  const Eigen::LDLT<state::SlowMatrix> own_covariance(own.covariance);
+  const state::SlowVector moved = known.value - own.value;
+  const state::SlowMatrix change = known.covariance - own.covariance;
+  for (std::size_t k = 0; k < solution.x.size(); ++k) {
+    state::StateMatrix P = solution.covariance_w[k].full();
+    const state::NodeBySlow cross = P.topRightCorner(state::kNodeSize, slow);
+    const state::NodeBySlow gain = own_covariance.solve(cross.transpose()).transpose();
+    solution.x[k] = state::boxplus(solution.x[k], state::NodeVector(gain * moved));
+    state::node_part(P) += gain * change * gain.transpose();
+    P.topRightCorner(state::kNodeSize, slow) = gain * known.covariance;
+    P.bottomLeftCorner(slow, state::kNodeSize) =
+        P.topRightCorner(state::kNodeSize, slow).transpose();
+    P.bottomRightCorner(slow, slow) = known.covariance;
+    solution.covariance_w[k] = state::PackedSymmetric(P);
+  }
+  solution.slow = known.value;
+}
 
 BatchSolution solve(BatchChain& chain, const GraphContext& context, const FgoOptions& options,
                     const imu::ImuNoise& noise) {
   BatchSolver solver(chain, context, options);
-  solver.optimize();
-  for (int round = 0; round < kRounds && solver.renew_factors(noise); ++round) solver.optimize();
+  minimize(solver, noise);
   return solver.solution();
+}
+
+BatchSolution solve_settled(BatchChain& chain, const GraphContext& context,
+                            const FgoOptions& options, const imu::ImuNoise& noise) {
+  BatchSolver solver(chain, context, options);
+  minimize(solver, noise);
+  return solver.settled();
 }
 
 }  // namespace foucault::fgo
