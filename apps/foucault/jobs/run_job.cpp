@@ -119,8 +119,7 @@ struct RunPass {
 /// A log that was smoothed in parts is gone through again, with what is known at its end.
 bool goes_again(fgo::BatchPasses& passes, Console& console) {
   if (passes.is_final()) return false;
-  console.say(
-      "smoothing  in parts (batch.memory_mb): a second pass, with constants from the first");
+  console.say("smoothing  in parts (batch.memory_mb): a second pass, with what the first found");
   passes = {passes.most_nodes, std::move(passes.found), {}, false};
   return true;
 }

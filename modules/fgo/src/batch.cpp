@@ -35,9 +35,10 @@ preintegration::PreintegrationModel BatchOptions::preintegration_model() const {
 
 std::size_t BatchOptions::most_nodes(const state::Layout& layout) const {
   constexpr double kNode = 6000;  // [B], measured; and the covariance of what is smoothed
+  constexpr double kFewest = 64;
   const auto size = static_cast<double>(state::kNodeSize + layout.slow_size());
-  return static_cast<std::size_t>(memory_mb * 1e6 /
-                                  (kNode + sizeof(double) * size * (size + 1) / 2));
+  const double node = kNode + sizeof(double) * size * (size + 1) / 2;
+  return static_cast<std::size_t>(std::max(kFewest, memory_mb * 1e6 / node));
 }
 
 BatchRecorder::BatchRecorder(std::unique_ptr<measurement::Navigator> forward,
@@ -49,7 +50,7 @@ BatchRecorder::BatchRecorder(std::unique_ptr<measurement::Navigator> forward,
       context_{geodesy::LocalFrame(Geodetic{}), model, as_constants(layout)},
       noise_(noise),
       passes_(std::move(passes)),
-      most_nodes_(passes_ ? passes_->most_nodes : 0) {
+      behind_(passes_ ? nodes_behind(passes_->known) : std::vector<NodeEstimate>()) {
   require_noise(noise);
 }
 
@@ -147,20 +148,17 @@ std::deque<measurement::SmoothedEpoch> BatchRecorder::settled() {
   std::deque<measurement::SmoothedEpoch> out;
   if (!passes_) return out;
   while (chains_.size() > 1) smooth_first_chain(out);
-  if (!chains_.empty() && chains_.back().nodes.size() >= most_nodes_) smooth_settled(out);
+  if (!chains_.empty() && chains_.back().nodes.size() >= passes_->most_nodes) smooth_part(out);
   return out;
 }
 
-/// Of what is left over, tries again when there is a quarter more.
-void BatchRecorder::smooth_settled(std::deque<measurement::SmoothedEpoch>& out) {
-  BatchChain& chain = chains_.back();
-  BatchSolution solution = solve_settled(chain, context_, options_, noise_);
-  most_nodes_ = std::max(passes_->most_nodes, chain.nodes.size() + passes_->most_nodes / 4);
-  if (solution.x.empty()) return;
-  if (solution.slow.size() > 0) passes_->in_parts = true;
-  if (chains_given_out_ < passes_->known.size())
-    take_border(solution, passes_->known[chains_given_out_]);
-  give_out(solution, out);
+void BatchRecorder::smooth_part(std::deque<measurement::SmoothedEpoch>& out) {
+  const std::size_t index = passes_->found.size();
+  const NodeEstimate* behind = index < behind_.size() ? &behind_[index] : nullptr;
+  BatchPart part = solve_part(chains_.back(), context_, options_, noise_, behind);
+  passes_->in_parts = true;
+  passes_->found.push_back(part.link);
+  give_out(part.solution, out);
 }
 
 std::deque<measurement::SmoothedEpoch> BatchRecorder::smoothed() {
@@ -171,10 +169,14 @@ std::deque<measurement::SmoothedEpoch> BatchRecorder::smoothed() {
 
 void BatchRecorder::smooth_first_chain(std::deque<measurement::SmoothedEpoch>& out) {
   BatchSolution solution = solve(chains_.front(), context_, options_, noise_);
-  if (passes_) passes_->found.push_back(border_of(solution));
+  if (passes_) {
+    PartLink end;
+    end.first = {solution.x.front(), solution.slow, solution.covariance_w.front().full()};
+    end.ends_chain = true;
+    passes_->found.push_back(end);
+  }
   give_out(solution, out);
   chains_.pop_front();
-  ++chains_given_out_;
 }
 
 void BatchRecorder::give_out(BatchSolution& solution, std::deque<measurement::SmoothedEpoch>& out) {

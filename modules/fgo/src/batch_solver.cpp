@@ -1,6 +1,5 @@
 #include "foucault/fgo/batch_solver.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -28,9 +27,6 @@ constexpr double kCostShareLeft = 1e-7;
 /// A thousandth of a sigma.
 constexpr double kCostLeft = 1e-6;
 
-/// Share of a sigma that does not count.
-constexpr double kInfluenceLeft = 1e-2;
-
 /// Levenberg and Marquardt's radius, as Ceres has it: what is known of a column by itself, over it,
 /// is added to what is known of all.
 struct TrustRegion {
@@ -46,37 +42,6 @@ struct TrustRegion {
       shrink *= 2;
     }
   }
-};
-
-/// How far the end of a chain reaches back, the border given: see solve_settled().
-class Reach {
- public:
-  explicit Reach(const NodeInformation& end)
-      : W_(end.S.topLeftCorner<state::kNodeSize, state::kNodeSize>()
-               .triangularView<Eigen::Upper>()
-               .solve(state::NodeMatrix::Identity())),
-        P_(W_ * W_.transpose()) {}
-
-  void go_back(const Conditional& node) {
-    const auto R = node.R.triangularView<Eigen::Upper>();
-    const state::NodeMatrix F = -R.solve(state::NodeMatrix(node.A.leftCols<state::kNodeSize>()));
-    const state::NodeMatrix root = R.solve(state::NodeMatrix::Identity());
-    W_ = F * W_;
-    P_ = root * root.transpose() + F * P_ * F.transpose();
-  }
-
-  bool has_faded() const { return is_below(kInfluenceLeft); }
-
-  /// Further back it will not rise again.
-  bool is_over() const { return is_below(1e-4 * kInfluenceLeft); }
-
- private:
-  bool is_below(double share) const {
-    return (W_.rowwise().squaredNorm().array() <= share * share * P_.diagonal().array()).all();
-  }
-
-  state::NodeMatrix W_;
-  state::NodeMatrix P_;  ///< of the node, the border given
 };
 
 /// The chain at its states, and the search for better ones.
@@ -99,7 +64,7 @@ class BatchSolver {
   bool renew_factors(const imu::ImuNoise& noise);
 
   BatchSolution solution();
-  BatchSolution settled();
+  BatchPart part(const NodeEstimate* behind);
 
  private:
   struct States {
@@ -363,31 +328,60 @@ BatchSolution BatchSolver::solution() {
   return {std::move(at_.x), at_.slow, std::move(covariances)};
 }
 
-BatchSolution BatchSolver::settled() {
+/// One node further back.
+void lengthen(PartLink& link, const Conditional& node) {
+  const auto R = node.R.triangularView<Eigen::Upper>();
+  const state::NodeByState f = -R.solve(node.A);
+  const state::NodeMatrix f_node = f.leftCols<state::kNodeSize>();
+  const state::NodeMatrix root = R.solve(state::NodeMatrix::Identity());
+  const Eigen::Index slow = f.cols() - state::kNodeSize;
+  const state::NodeByState F = f_node * link.F;
+  link.F = F;
+  link.F.rightCols(slow) += f.rightCols(slow);
+  link.Q = root * root.transpose() + f_node * link.Q * f_node.transpose();
+}
+
+state::StateVector difference(const NodeEstimate& a, const NodeEstimate& b) {
+  state::StateVector d(state::kNodeSize + a.slow.size());
+  d << state::boxminus(a.x, b.x), a.slow - b.slow;
+  return d;
+}
+
+BatchPart BatchSolver::part(const NodeEstimate* behind) {
   const StageTimer timer(Stage::covariance);
   next_ = {};
-  std::vector<state::PackedSymmetric> covariances;
-  const Front end = sweep();
-  state::StateMatrix P = covariance(end.information);
-  Reach reach(end.information);
+  const std::size_t nodes = 3 * at_.x.size() / 4;
+  BatchPart out;
+  out.solution.slow = behind != nullptr ? behind->slow : at_.slow;
+  out.solution.x.resize(nodes);
+  out.solution.covariance_w.resize(nodes);
+  PartLink& link = out.link;
+  link.first = {at_.x.front(), at_.slow};
+  link.behind = {at_.x[nodes], at_.slow};
+  state::StateMatrix P = covariance(sweep().information);
+  state::StateVector d = state::StateVector::Zero(P.rows());
   go_back([&](std::size_t k, const Pivot& pivot) {
     P = pivot.covariance(P);
-    if (!reach.is_over()) {
-      reach.go_back(pivot);
-      if (!reach.has_faded()) covariances.clear();
-      if (reach.has_faded() && covariances.empty()) return covariances.resize(k);
+    if (k > nodes) return;
+    if (k == nodes) {
+      link.F = state::NodeByState::Identity(state::kNodeSize, P.cols());
+      if (behind == nullptr) return;
+      P = behind->covariance;
+      d = difference(*behind, link.behind);
+      return;
     }
-    if (!covariances.empty()) covariances[k] = state::PackedSymmetric(P);
+    lengthen(link, pivot);
+    const state::NodeVector own = -pivot.R.triangularView<Eigen::Upper>().solve(pivot.A * d);
+    state::node_part(d) = own;
+    out.solution.x[k] = state::boxplus(at_.x[k], own);
+    out.solution.covariance_w[k] = state::PackedSymmetric(P);
   });
-  const auto nodes = static_cast<std::ptrdiff_t>(covariances.size());
-  BatchSolution out{{at_.x.begin(), at_.x.begin() + nodes}, at_.slow, std::move(covariances)};
-  take_off(out.x.size());
+  take_off(nodes);
   return out;
 }
 
 /// What they know, with the observations of the next, becomes its prior.
 void BatchSolver::take_off(std::size_t nodes) {
-  if (nodes == 0) return;
   Front front = first_front();
   for (std::size_t k = 0; k < nodes; ++k) advance(k, front);
   chain_.prior = to_prior(front.information, at_.x[nodes], at_.slow);
@@ -405,31 +399,28 @@ void minimize(BatchSolver& solver, const imu::ImuNoise& noise) {
 
 }  // namespace
 
-BorderEstimate border_of(const BatchSolution& solution) {
-  const Eigen::Index slow = solution.slow.size();
-  return {solution.slow, solution.covariance_w.front().full().bottomRightCorner(slow, slow)};
+NodeEstimate through(const PartLink& link, const NodeEstimate& behind) {
+  constexpr int kNode = state::kNodeSize;
+  const state::StateMatrix& P = behind.covariance;
+  const Eigen::Index slow = P.rows() - kNode;
+  const state::NodeVector moved = link.F * difference(behind, link.behind);
+  const state::NodeByState FP = link.F * P;
+  NodeEstimate out{state::boxplus(link.first.x, moved), behind.slow, P};
+  const state::NodeMatrix node = link.Q + FP * link.F.transpose();
+  state::node_part(out.covariance) = 0.5 * (node + node.transpose());
+  out.covariance.topRightCorner(kNode, slow) = FP.rightCols(slow);
+  out.covariance.bottomLeftCorner(slow, kNode) = FP.rightCols(slow).transpose();
+  return out;
 }
 
-void take_border(BatchSolution& solution, const BorderEstimate& known) {
-  const Eigen::Index slow = known.value.size();
-  if (slow == 0 || solution.x.empty()) return;
-  const BorderEstimate own = border_of(solution);
-  const Eigen::LDLT<state::SlowMatrix> own_covariance(own.covariance);
-  const state::SlowVector moved = known.value - own.value;
-  const state::SlowMatrix change = known.covariance - own.covariance;
-  for (std::size_t k = 0; k < solution.x.size(); ++k) {
-    state::StateMatrix P = solution.covariance_w[k].full();
-    const state::NodeBySlow cross = P.topRightCorner(state::kNodeSize, slow);
-    const state::NodeBySlow gain = own_covariance.solve(cross.transpose()).transpose();
-    solution.x[k] = state::boxplus(solution.x[k], state::NodeVector(gain * moved));
-    state::node_part(P) += gain * change * gain.transpose();
-    P.topRightCorner(state::kNodeSize, slow) = gain * known.covariance;
-    P.bottomLeftCorner(slow, state::kNodeSize) =
-        P.topRightCorner(state::kNodeSize, slow).transpose();
-    P.bottomRightCorner(slow, slow) = known.covariance;
-    solution.covariance_w[k] = state::PackedSymmetric(P);
+std::vector<NodeEstimate> nodes_behind(const std::vector<PartLink>& links) {
+  std::vector<NodeEstimate> behind(links.size());
+  NodeEstimate known;
+  for (std::size_t i = links.size(); i-- > 0;) {
+    behind[i] = known;
+    known = links[i].ends_chain ? links[i].first : through(links[i], known);
   }
-  solution.slow = known.value;
+  return behind;
 }
 
 BatchSolution solve(BatchChain& chain, const GraphContext& context, const FgoOptions& options,
@@ -439,11 +430,11 @@ BatchSolution solve(BatchChain& chain, const GraphContext& context, const FgoOpt
   return solver.solution();
 }
 
-BatchSolution solve_settled(BatchChain& chain, const GraphContext& context,
-                            const FgoOptions& options, const imu::ImuNoise& noise) {
+BatchPart solve_part(BatchChain& chain, const GraphContext& context, const FgoOptions& options,
+                     const imu::ImuNoise& noise, const NodeEstimate* behind) {
   BatchSolver solver(chain, context, options);
   minimize(solver, noise);
-  return solver.settled();
+  return solver.part(behind);
 }
 
 }  // namespace foucault::fgo

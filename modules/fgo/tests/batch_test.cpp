@@ -319,39 +319,6 @@ TEST_F(BatchTest, WhatItFoundInTheForwardRunPutsItRight) {
   EXPECT_GT(node.after.head<3>().norm(), 1e-3);
 }
 
-/// Without slow blocks one pass is enough.
-TEST_F(BatchTest, InPartsItIsTheWhole) {
-  imu::ImuNoise noise = test_noise();
-  noise.bias_tau = 10;  // forgotten within the drive
-  constexpr auto kModel = preintegration::PreintegrationModel::refined;
-  const auto smoothed = [&](const std::shared_ptr<BatchPasses>& passes) {
-    reseed(2);
-    BatchRecorder batch(std::make_unique<WindowNavigator>(window_of(10), kModel, noise), exact(),
-                        kModel, noise, {}, passes);
-    batch.start(initial(0.1));
-    std::deque<measurement::SmoothedEpoch> nodes;
-    run(batch, 300, 99, 105, [&](int /*second*/) {
-      for (const measurement::SmoothedEpoch& node : batch.settled()) nodes.push_back(node);
-    });
-    if (passes) EXPECT_GT(nodes.size(), 200u) << "before the end";
-    for (const measurement::SmoothedEpoch& node : batch.smoothed()) nodes.push_back(node);
-    return nodes;
-  };
-  const auto passes = std::make_shared<BatchPasses>();
-  passes->most_nodes = 80;
-  const auto parts = smoothed(passes);
-  EXPECT_TRUE(passes->is_final());
-  const auto whole = smoothed(nullptr);
-  ASSERT_EQ(parts.size(), whole.size());
-  for (std::size_t k = 0; k < whole.size(); ++k) {
-    const state::NodeVector sigma = whole[k].epoch().covariance.diagonal().cwiseSqrt();
-    const state::NodeVector own = parts[k].epoch().covariance.diagonal().cwiseSqrt();
-    const state::NodeVector moved = state::boxminus(parts[k].state, whole[k].state);
-    EXPECT_LT(moved.cwiseQuotient(sigma).cwiseAbs().maxCoeff(), 0.01) << k;
-    EXPECT_LT((own - sigma).cwiseQuotient(sigma).cwiseAbs().maxCoeff(), 0.01) << k;
-  }
-}
-
 TEST_F(BatchTest, ANewStartIsANewChain) {
   reseed(3);
   const std::unique_ptr<BatchRecorder> batch = recorder();

@@ -105,20 +105,19 @@ TEST_F(Border, AllRoutesEndThere) {
   }
 }
 
-/// A drive whose biases are forgotten soon, in parts if there are passes.
+/// A drive in parts, if there are passes.
 class Parts : public Border {
  protected:
   std::deque<measurement::SmoothedEpoch> smoothed(const std::shared_ptr<BatchPasses>& passes) {
+    longest_wait_ = 0;
     reseed(11);
     draw_slow();
-    imu::ImuNoise noise = test_noise();
-    noise.bias_tau = 10;
     FgoOptions options;
     options.max_iterations = 50;
     constexpr auto kModel = preintegration::PreintegrationModel::refined;
     BatchRecorder recorder(
-        std::make_unique<WindowNavigator>(window_of(10), kModel, noise, layout()), options, kModel,
-        noise, layout(), passes);
+        std::make_unique<WindowNavigator>(window_of(10), kModel, test_noise(), layout()), options,
+        kModel, test_noise(), layout(), passes);
     recorder.start(initial(1));
     std::deque<measurement::SmoothedEpoch> nodes;
     const auto take = [&](std::deque<measurement::SmoothedEpoch> more) {
@@ -157,21 +156,12 @@ TEST_F(Parts, OfTwoPassesAreTheWhole) {
   const auto first = smoothed(passes);
   EXPECT_FALSE(passes->is_final());
   *passes = {passes->most_nodes, passes->found, {}, false};
-  longest_wait_ = 0;
   const auto second = smoothed(passes);
+  EXPECT_GT(passes->found.size(), 2u);
   EXPECT_TRUE(passes->is_final());
-  EXPECT_LT(longest_wait_, 151u) << "a quarter more where little was settled";
+  EXPECT_LE(longest_wait_, 121u);
   EXPECT_LT(largest_difference(second, whole), 0.01);
   EXPECT_GT(largest_difference(first, whole), 0.1) << "it did not know the end";
-}
-
-TEST_F(Parts, AreNoneWhereEverythingHasAnInfluence) {
-  const auto passes = std::make_shared<BatchPasses>();
-  passes->most_nodes = 8;  // seconds
-  longest_wait_ = 0;
-  const auto parts = smoothed(passes);
-  EXPECT_GT(longest_wait_, 8u) << "kept until it has none";
-  EXPECT_EQ(parts.size(), 301u);
 }
 
 /// What is estimated beside a node outlives a restart if the Epoch has it, and loosening.

@@ -27,14 +27,13 @@ class BatchOptions : public Configurable {
   preintegration::PreintegrationModel preintegration_model() const;
 };
 
-/// A log that is too long to be kept as a whole is smoothed in parts, each as soon as nothing that
-/// comes has an influence on it but through the slow blocks, which are known at the end alone: what
-/// is given out then is the first of two passes, and the second one is told of them.
+/// A log that is too long to be kept as a whole is smoothed in parts, in two passes over it: the
+/// first finds how the parts hang together, the second gives them out as the whole would have them.
 struct BatchPasses {
-  std::size_t most_nodes = 0;         ///< kept at a time
-  std::vector<BorderEstimate> known;  ///< from the pass before, one a start
-  std::vector<BorderEstimate> found;  ///< at the ends of this one
-  bool in_parts = false;              ///< this pass
+  std::size_t most_nodes = 0;   ///< kept at a time
+  std::vector<PartLink> known;  ///< by the pass before
+  std::vector<PartLink> found;  ///< by this one
+  bool in_parts = false;        ///< this pass
   bool is_final() const { return !in_parts || !known.empty(); }
 };
 
@@ -79,7 +78,7 @@ class BatchRecorder final : public measurement::Navigator, public measurement::R
   void close_interval();
   void add_node(const state::Epoch& now);
   void smooth_first_chain(std::deque<measurement::SmoothedEpoch>& out);
-  void smooth_settled(std::deque<measurement::SmoothedEpoch>& out);
+  void smooth_part(std::deque<measurement::SmoothedEpoch>& out);
   void give_out(BatchSolution& solution, std::deque<measurement::SmoothedEpoch>& out);
   measurement::SmoothedEpoch smoothed_at(const Passage& passage, const state::Epoch& epoch) const;
 
@@ -89,10 +88,9 @@ class BatchRecorder final : public measurement::Navigator, public measurement::R
   imu::ImuNoise noise_;
 
   std::shared_ptr<BatchPasses> passes_;
-  std::size_t most_nodes_;
+  std::vector<NodeEstimate> behind_;  ///< the parts, from the pass before
 
-  std::deque<BatchChain> chains_;  ///< one a start
-  std::size_t chains_given_out_ = 0;
+  std::deque<BatchChain> chains_;                            ///< one a start
   std::deque<Passage> passages_;                             ///< one a node, all chains
   std::size_t given_out_ = 0;                                ///< nodes
   std::optional<preintegration::Preintegrator> integrator_;  ///< from the newest node on

@@ -31,16 +31,31 @@ struct BatchSolution {
   std::vector<state::PackedSymmetric> covariance_w;
 };
 
-/// What is known of the border.
-struct BorderEstimate {
-  state::SlowVector value;
-  state::SlowMatrix covariance;
+/// A node and the border.
+struct NodeEstimate {
+  state::NodeState x;
+  state::SlowVector slow;
+  state::StateMatrix covariance = state::NodeMatrix::Zero();
 };
-BorderEstimate border_of(const BatchSolution& solution);
 
-/// The solution if more is known of the border, `known` with all that the chain says of it: exact
-/// where what more there is has to do with the nodes through the border alone.
-void take_border(BatchSolution& solution, const BorderEstimate& known);
+/// What the first node of a part of a chain has to do with what comes after the part: all of it
+/// goes through the node behind the part and the border. Of the estimates from the part and a
+/// little more, `first` and `behind`,
+///   node - first = F ((node behind, border) - behind) + e,  e with covariance Q,
+/// and e has nothing to do with anything after the part.
+struct PartLink {
+  NodeEstimate first;   ///< its covariance: only at the end of a chain, where nothing comes behind
+  NodeEstimate behind;  ///< without covariance
+  state::NodeByState F;
+  state::NodeMatrix Q = state::NodeMatrix::Zero();
+  bool ends_chain = false;
+};
+
+/// The estimate of the first node from one of the node behind, that knows everything.
+NodeEstimate through(const PartLink& link, const NodeEstimate& behind);
+
+/// For every part the node behind it, from everything; of those that end a chain there is none.
+std::vector<NodeEstimate> nodes_behind(const std::vector<PartLink>& links);
 
 /// Minimizes the cost by Gauss and Newton from the nodes' first estimates, by damped steps where a
 /// full one does not lower it. Intervals whose bias has moved are integrated again if their
@@ -51,15 +66,15 @@ void take_border(BatchSolution& solution, const BorderEstimate& known);
 BatchSolution solve(BatchChain& chain, const GraphContext& context, const FgoOptions& options,
                     const imu::ImuNoise& noise);
 
-/// The same of a chain that goes on, for its first nodes: those whose sigmas and states change by
-/// less than a hundredth of a sigma, the border given, whatever comes after the chain. They are
-/// taken off, with what they know left as the prior of the rest. None if nothing is settled.
-///
-/// Influence decays as information does: with the border given, elimination makes node k a linear
-/// function of node k + 1, F(k) (node k + 1) + e(k). So the end of the chain, known to L L' without
-/// anything after it, moves node k by W(k) = F(k) F(k + 1) ... L at one sigma, and no more than
-/// W(k) W(k)' of its covariance can be taken away.
-BatchSolution solve_settled(BatchChain& chain, const GraphContext& context,
-                            const FgoOptions& options, const imu::ImuNoise& noise);
+/// Three quarters of a chain that goes on, which are taken off, with what they know left as the
+/// prior of the rest. The last quarter is there that their states are near enough to the final ones
+/// for everything to be linear; with the node behind them known from everything, `behind`, they
+/// come out as if the whole had been solved. Throws std::runtime_error as solve().
+struct BatchPart {
+  BatchSolution solution;
+  PartLink link;
+};
+BatchPart solve_part(BatchChain& chain, const GraphContext& context, const FgoOptions& options,
+                     const imu::ImuNoise& noise, const NodeEstimate* behind);
 
 }  // namespace foucault::fgo

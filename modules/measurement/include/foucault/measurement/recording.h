@@ -29,8 +29,8 @@ class Recording {
   virtual bool at_node() const = 0;
   virtual std::size_t size() const = 0;
 
-  /// The next nodes, in order, on which nothing that comes has an influence any more; a recording
-  /// that is smoothed as a whole has none before its end. May be called after everything above.
+  /// The next nodes, in order, that need not wait for the end; a recording that is smoothed as a
+  /// whole has none. May be called after everything above.
   virtual std::deque<SmoothedEpoch> settled() { return {}; }
 
   /// One a node, in order, those that were settled left out. Called once, at the end.

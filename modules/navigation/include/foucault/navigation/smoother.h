@@ -20,8 +20,7 @@ state::Epoch between(const measurement::SmoothedEpoch& begin, const measurement:
                      const state::NavState& forward);
 
 /// Runs a recording navigator forward, of which a ForwardSink is told the epochs, and gives out
-/// what nothing that comes can change any more, epochs from all fixes: everything at finish(), of a
-/// recording in parts some before.
+/// epochs from all fixes: everything at finish(), of a recording in parts some before.
 /// Innovations of fixes are those of the forward run, postfits those of the smoothed solution. With
 /// EpochRate::imu the epochs between nodes are interpolated, see between(); memory then grows by
 /// 200 bytes an epoch, else by what a node takes. finish() throws DataError if a node's solution is
