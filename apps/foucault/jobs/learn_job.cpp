@@ -8,7 +8,6 @@
 
 #include "foucault/core/constants.h"
 #include "foucault/core/error.h"
-#include "foucault/diagnosis/fix_judge.h"
 #include "foucault/export/json_object.h"
 #include "foucault/export/text_file.h"
 #include "foucault/page/report_page.h"
@@ -78,22 +77,6 @@ std::vector<LearnedValue> values_of(const Learned& learned, const calibration::R
   return values;
 }
 
-/// With a Gauss-Markov part beside the white one, if it explains the recordings better than chance
-/// would once in ten thousand times.
-std::optional<std::pair<double, double>> lasting_errors(
-    const std::vector<calibration::RecordedWay>& ways, const Learned& without,
-    calibration::LearnOptions options) {
-  constexpr double kChance = 1e-4;
-  NoiseModel start = without.noise;
-  start.fix_coloured = 0.5 * start.fix_white;
-  options.profile = false;
-  options.axes.insert(options.axes.end(), {axis::fix_coloured, axis::fix_tau});
-  const Learned with = calibration::learn(ways, start, options);
-  const double gain = calibration::gain_of(ways, without.noise, with.noise, options);
-  if (diagnosis::chi_square_tail(2 * gain, 2) > kChance) return std::nullopt;
-  return std::pair{with.noise.fix_coloured, with.noise.fix_tau_s};
-}
-
 calibration::RecordedWay way_of(const std::string& log, const Settings& told, Console& console) {
   Settings settings = told;
   settings.calibrate.noise = "off";
@@ -132,8 +115,8 @@ std::string learn_json(const LearnResult& result) {
   }
   json["lasting_fix_errors"] = result.lasting
                                    ? exports::Json(exports::Object()
-                                                       .with("sigmas", result.lasting->first)
-                                                       .with("tau_s", result.lasting->second))
+                                                       .with("sigmas", result.lasting->sigmas)
+                                                       .with("tau_s", result.lasting->tau_s))
                                    : exports::Json(nullptr);
   json["horizons"] = exports::Object()
                          .with("before", horizons_json(result.before))
@@ -157,13 +140,12 @@ LearnResult learn(const LearnJob& job, Console& console) {
   model.imu = told.imu.noise();
   calibration::LearnOptions options;
   options.axes = calibration::axes_of(ways).all();
-  options.profile = true;
+  options.profile = options.lasting = true;
   console.progress("learning", 0);
   const Learned learned = calibration::learn(ways, model, options);
-  console.progress("learning", 0.7);
-  result.lasting = lasting_errors(ways, learned, options);
   console.clear_progress();
 
+  result.lasting = learned.lasting;
   result.values = values_of(learned, ways.front());
   result.before = learned.before;
   result.after = learned.after;
@@ -195,7 +177,7 @@ std::vector<std::string> summary_lines(const LearnResult& result) {
   if (result.lasting) {
     lines.push_back(fmt::format(
         "errors of fixes that last: {:.2g} of their sigmas, for {:.0f} s (no method models them)",
-        result.lasting->first, result.lasting->second));
+        result.lasting->sigmas, result.lasting->tau_s));
   }
   for (std::size_t i = 0; i < result.after.size(); ++i) {
     const std::string horizon = result.after[i].horizon_s > 0

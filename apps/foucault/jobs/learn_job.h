@@ -33,7 +33,7 @@ struct LearnResult {
   std::vector<LearnedValue> values;
   /// Errors of fixes that last: sigma in those of the fixes and correlation time; none if the
   /// recordings do not show them.
-  std::optional<std::pair<double, double>> lasting;
+  std::optional<calibration::LastingErrors> lasting;
   std::vector<calibration::NormalizedError> before, after;
   int passes = 0;
   std::string out, command_line, config;

@@ -193,7 +193,9 @@ LearnedNoise Surveyor::learn_noise(const std::string& log, const calibration::Re
   const calibration::NoiseAxes axes = calibration::axes_of(ways);
   console_.progress("noise", 0);
   const calibration::Learned aids = calibration::learn(ways, told, {axes.of_aids});
-  const calibration::Learned all = calibration::learn(ways, aids.noise, {axes.all()});
+  calibration::LearnOptions of_all{axes.all()};
+  of_all.lasting = true;
+  const calibration::Learned all = calibration::learn(ways, aids.noise, of_all);
   console_.clear_progress();
   const double tries = 1 + static_cast<double>(calibration::LearnOptions{}.horizons_s.size());
   const double chance =

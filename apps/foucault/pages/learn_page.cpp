@@ -119,9 +119,11 @@ plot::Figure horizons_figure(const LearnResult& result) {
 std::string lasting_text(const LearnResult& result) {
   if (!result.lasting) return "Errors of fixes do not last beyond the next one.";
   return fmt::format(
-      "Of the errors of fixes {:.2g} sigmas last for about {:.0f} s (a Gauss-Markov process). No "
-      "method models that part: positions are somewhat more certain than they should be.",
-      result.lasting->first, result.lasting->second);
+      "Of the errors of fixes {:.2g} sigmas last for about {:.0f} s (a Gauss-Markov process); the "
+      "noise of the IMU was learned beside them. No method models that part: gnss.sigma_scale is "
+      "what serves methods that take errors for white, and positions are somewhat more certain "
+      "than they should be.",
+      result.lasting->sigmas, result.lasting->tau_s);
 }
 
 }  // namespace

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <optional>
+#include <utility>
 
 namespace foucault::calibration {
 namespace {
@@ -218,11 +220,11 @@ bool knows_variations(const Place& place, const LearnOptions& options) {
 
 /// From variations of biases that are thirty times what was told; if they do not show there, from
 /// others.
-Place highest(Landscape& landscape, const LearnOptions& options) {
+Place highest(Landscape& landscape, const Eigen::VectorXd& origin, const LearnOptions& options) {
   const std::vector<NoiseAxis>& axes = options.axes;
   Place best;
   for (const double factor : {30.0, 300.0, 1.0}) {
-    Eigen::VectorXd start = landscape.origin();
+    Eigen::VectorXd start = origin;
     for (std::size_t i = 0; i < axes.size(); ++i)
       if (is_variation(axes[i])) start[static_cast<Eigen::Index>(i)] = std::log(factor);
     Place place = climbed(landscape, start);
@@ -263,6 +265,60 @@ void add_profiles(Landscape& landscape, const Place& best, std::vector<LearnedAx
   }
 }
 
+Learned found_at(Landscape& landscape, const Place& best, const NoiseModel& told,
+                 const LearnOptions& options) {
+  Learned out;
+  out.noise = landscape.at(best.x);
+  out.axes = learned_axes(options, told, out.noise, best.information.inverse());
+  if (options.profile) add_profiles(landscape, best, out.axes);
+  out.passes = landscape.passes();
+  return out;
+}
+
+/// All else as it is, the sigma of fixes for those who take their errors for white.
+void learn_white_alone(const std::vector<RecordedWay>& ways, const LearnOptions& options,
+                       Learned& out) {
+  const NoiseAxis& white = noise_axis::fix_white;
+  const auto axis = std::find_if(out.axes.begin(), out.axes.end(),
+                                 [&](const LearnedAxis& a) { return a.axis.name == white.name; });
+  if (axis == out.axes.end()) return;
+  LearnOptions alone = options;
+  alone.axes = {white};
+  out.noise.fix_white = std::hypot(out.noise.fix_white, out.noise.fix_coloured);
+  out.noise.fix_coloured = 0;
+  Landscape landscape(ways, out.noise, alone, alone.starts);
+  const Learned found =
+      found_at(landscape, climbed(landscape, landscape.origin()), out.noise, alone);
+  out.noise = found.noise;
+  out.passes += found.passes;
+  const double told = axis->told;
+  *axis = found.axes.front();
+  axis->told = told;
+}
+
+/// From the place without them; none if chance would explain as much.
+std::optional<Learned> among_lasting_errors(const std::vector<RecordedWay>& ways, NoiseModel told,
+                                            const LearnOptions& options, const Place& without) {
+  constexpr double kChance = 1e-4;
+  told.fix_coloured = 0.5;  // of what was told
+  LearnOptions more = options;
+  more.axes.insert(more.axes.end(), {noise_axis::fix_coloured, noise_axis::fix_tau});
+  Landscape coarse(ways, told, more, options.starts / 4);
+  Landscape landscape(ways, told, more, options.starts);
+  Eigen::VectorXd origin = landscape.origin();
+  origin.head(without.x.size()) = without.x;
+  const Place with = climbed(landscape, highest(coarse, origin, more).x);
+  // Twice the gain is a chi-square of two degrees of freedom, at the next fix or any horizon.
+  const double gain = gain_of(without.predictions, with.predictions, landscape.every());
+  const double tries = 1 + static_cast<double>(options.horizons_s.size());
+  if (tries * std::exp(-gain) > kChance) return std::nullopt;
+  Learned out = found_at(landscape, with, told, options);
+  out.passes += coarse.passes();
+  out.lasting = {out.noise.fix_coloured, out.noise.fix_tau_s};
+  learn_white_alone(ways, options, out);
+  return out;
+}
+
 }  // namespace
 
 std::vector<NoiseAxis> NoiseAxes::all() const {
@@ -288,19 +344,20 @@ NoiseAxes axes_of(const std::vector<RecordedWay>& ways) {
 
 Learned learn(const std::vector<RecordedWay>& ways, const NoiseModel& told,
               const LearnOptions& options) {
-  if (options.axes.empty()) return {told, {}, 0, 0, {}, {}};
+  if (options.axes.empty()) return {told, {}, {}, 0, 0, {}, {}};
   Landscape coarse(ways, told, options, options.starts / 4);
   Landscape landscape(ways, told, options, options.starts);
   const Place before = place_at(landscape, landscape.origin());
-  const Place best = climbed(landscape, highest(coarse, options).x);
-  Learned out;
-  out.noise = landscape.at(best.x);
-  out.axes = learned_axes(options, told, out.noise, best.information.inverse());
-  if (options.profile) add_profiles(landscape, best, out.axes);
-  out.gain = gain_of(before.predictions, best.predictions, landscape.every());
-  out.passes = coarse.passes() + landscape.passes();
+  const Place best = climbed(landscape, highest(coarse, coarse.origin(), options).x);
+  std::optional<Learned> among;
+  if (options.lasting) among = among_lasting_errors(ways, told, options, best);
+  Learned out = among ? std::move(*among) : found_at(landscape, best, told, options);
+  const std::vector<Prediction> after =
+      all_predictions(ways, out.noise, {options.horizons_s, landscape.every()});
+  out.gain = gain_of(before.predictions, after, landscape.every());
+  out.passes += coarse.passes() + (among ? landscape.passes() : 0) + 1;
   out.before = normalized_errors(before.predictions);
-  out.after = normalized_errors(best.predictions);
+  out.after = normalized_errors(after);
   return out;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "foucault/calibration/prediction.h"
@@ -16,6 +17,8 @@ struct LearnOptions {
   /// Of predictions, at least 5 s and at most 60 s apart; a quarter of them until the top is near.
   int starts = 60;
   bool profile = false;  ///< of each axis
+  /// Also with a part of the errors of positions that lasts (Gauss-Markov).
+  bool lasting = false;
 };
 
 /// One number that was to be learned.
@@ -29,8 +32,17 @@ struct LearnedAxis {
   std::vector<double> profile_factors, profile;
 };
 
+/// The Gauss-Markov part of the errors of positions.
+struct LastingErrors {
+  double sigmas = 0;  ///< in sigmas that were told
+  double tau_s = 0;
+};
+
 struct Learned {
+  /// For estimators that know white errors of fixes alone. Where errors of fixes last, `fix_white`
+  /// is the most likely one with all else as it is, which was learned beside the part that lasts.
   NoiseModel noise;
+  std::optional<LastingErrors> lasting;
   std::vector<LearnedAxis> axes;
   double gain = 0;  ///< over the told noise, as gain_of()
   int passes = 0;
@@ -50,7 +62,11 @@ NoiseAxes axes_of(const std::vector<RecordedWay>& ways);
 /// Fisher's scoring: gradient and information from the derivatives of errors and covariances
 /// (differences), as of independent predictions, a quarter of a minute apart. Variations of biases
 /// that are far too small leave no slope, so that it is also started from large ones.
-/// Ways are of one vehicle. Deterministic.
+/// Receivers filter: next to one another their errors hardly differ, over a minute they do. With
+/// white errors alone, such fixes look a hundred times better than they are, and what they do over
+/// a minute like noise of the accelerometers. So with options.lasting a Gauss-Markov part is
+/// learned beside, and kept where chance would explain as much once in ten thousand times. Ways are
+/// of one vehicle. Deterministic.
 Learned learn(const std::vector<RecordedWay>& ways, const NoiseModel& told,
               const LearnOptions& options);
 
