@@ -115,9 +115,9 @@ constexpr std::array<TriadFigure, 3> kErrors{{
 constexpr std::array<TriadFigure, 3> kSeparations{{
     {&RunData::position_separation, "position_separation", "Position, smoothed less forward",
      "What the fixes that came later changed. The bounds are what they may change: the sigmas of "
-     "the forward run less those of the smoothed one, squared. Both end at the last fix, where the "
-     "two are the same. Beyond the bounds, the sigmas of the forward run are too small, or a fix "
-     "was wrong.",
+     "the forward run less those of the smoothed one, squared, which end at the last fix. Beyond "
+     "the bounds, the forward run thought itself better than it was: a fix was wrong, or it had "
+     "taken for known what came out otherwise (a lever arm, a scale).",
      "separation", "m", kNed, 0, true},
     {&RunData::velocity_separation, "velocity_separation", "Velocity, smoothed less forward",
      "What the fixes that came later changed, local north-east-down, with 3-sigma bounds.",
@@ -196,7 +196,7 @@ Panel triad_panel(const RunData& data, const TriadFigure& look, const DecimatedT
   panel.y.least_span = look.least_span;
   panel.series = {
       bounds(curve.t, look.is_error ? zero : curve.value, curve.sigma, column + " 3 sigma"),
-      line(look.is_error ? "error" : "estimate", Ink::blue, curve.t, curve.value)};
+      line(look.is_error ? look.noun : "estimate", Ink::blue, curve.t, curve.value)};
   panel.series.back().column = column;
   return panel;
 }

@@ -97,7 +97,7 @@ TEST(RunReport, SmoothedAgainstForwardIsDrawnWithWhatItMayChange) {
   EXPECT_NEAR(series_of(north, "±3σ").upper.front(), 0.6, 1e-12);
   const Section& section = section_of(page, "Smoothed against forward");
   EXPECT_EQ(section.figures.size(), 3U);
-  EXPECT_EQ(section.tables.at(0).rows.at(0).at(2), "0.3") << "RMS along north";
+  EXPECT_EQ(section.tables.at(0).rows.at(0).at(2), "0.300") << "RMS along north";
   EXPECT_EQ(section.tables.at(2).rows.at(2).at(2), "0.573") << "of the heading, in degrees";
 }
 

@@ -34,9 +34,9 @@ preintegration::PreintegrationModel BatchOptions::preintegration_model() const {
 }
 
 std::size_t BatchOptions::most_nodes(const state::Layout& layout) const {
-  constexpr double kNode = 6000;  // [B], measured; and the covariance of what is smoothed
+  constexpr double kNode = 7500;  // [B], measured; and the covariance of what is smoothed
   constexpr double kFewest = 64;
-  const auto size = static_cast<double>(state::kNodeSize + layout.slow_size());
+  const auto size = static_cast<double>(layout.size());
   const double node = kNode + sizeof(double) * size * (size + 1) / 2;
   return static_cast<std::size_t>(std::max(kFewest, memory_mb * 1e6 / node));
 }

@@ -328,23 +328,8 @@ BatchSolution BatchSolver::solution() {
   return {std::move(at_.x), at_.slow, std::move(covariances)};
 }
 
-/// One node further back.
-void lengthen(PartLink& link, const Conditional& node) {
-  const auto R = node.R.triangularView<Eigen::Upper>();
-  const state::NodeByState f = -R.solve(node.A);
-  const state::NodeMatrix f_node = f.leftCols<state::kNodeSize>();
-  const state::NodeMatrix root = R.solve(state::NodeMatrix::Identity());
-  const Eigen::Index slow = f.cols() - state::kNodeSize;
-  const state::NodeByState F = f_node * link.F;
-  link.F = F;
-  link.F.rightCols(slow) += f.rightCols(slow);
-  link.Q = root * root.transpose() + f_node * link.Q * f_node.transpose();
-}
-
 state::StateVector difference(const NodeEstimate& a, const NodeEstimate& b) {
-  state::StateVector d(state::kNodeSize + a.slow.size());
-  d << state::boxminus(a.x, b.x), a.slow - b.slow;
-  return d;
+  return joined(state::boxminus(a.x, b.x), a.slow - b.slow);
 }
 
 BatchPart BatchSolver::part(const NodeEstimate* behind) {
@@ -364,13 +349,13 @@ BatchPart BatchSolver::part(const NodeEstimate* behind) {
     P = pivot.covariance(P);
     if (k > nodes) return;
     if (k == nodes) {
-      link.F = state::NodeByState::Identity(state::kNodeSize, P.cols());
+      link.dependence = on_itself(at_.slow.size());
       if (behind == nullptr) return;
       P = behind->covariance;
       d = difference(*behind, link.behind);
       return;
     }
-    lengthen(link, pivot);
+    link.dependence = of_node_before(pivot, link.dependence);
     const state::NodeVector own = -pivot.R.triangularView<Eigen::Upper>().solve(pivot.A * d);
     state::node_part(d) = own;
     out.solution.x[k] = state::boxplus(at_.x[k], own);
@@ -400,17 +385,9 @@ void minimize(BatchSolver& solver, const imu::ImuNoise& noise) {
 }  // namespace
 
 NodeEstimate through(const PartLink& link, const NodeEstimate& behind) {
-  constexpr int kNode = state::kNodeSize;
-  const state::StateMatrix& P = behind.covariance;
-  const Eigen::Index slow = P.rows() - kNode;
-  const state::NodeVector moved = link.F * difference(behind, link.behind);
-  const state::NodeByState FP = link.F * P;
-  NodeEstimate out{state::boxplus(link.first.x, moved), behind.slow, P};
-  const state::NodeMatrix node = link.Q + FP * link.F.transpose();
-  state::node_part(out.covariance) = 0.5 * (node + node.transpose());
-  out.covariance.topRightCorner(kNode, slow) = FP.rightCols(slow);
-  out.covariance.bottomLeftCorner(slow, kNode) = FP.rightCols(slow).transpose();
-  return out;
+  const state::NodeVector moved = link.dependence.F * difference(behind, link.behind);
+  return {state::boxplus(link.first.x, moved), behind.slow,
+          covariance(link.dependence, behind.covariance)};
 }
 
 std::vector<NodeEstimate> nodes_behind(const std::vector<PartLink>& links) {

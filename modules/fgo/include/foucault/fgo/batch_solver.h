@@ -3,6 +3,7 @@
 #include <deque>
 #include <vector>
 
+#include "foucault/fgo/chain.h"
 #include "foucault/fgo/fgo_options.h"
 #include "foucault/fgo/imu_interval.h"
 #include "foucault/fgo/observation_factor.h"
@@ -41,13 +42,12 @@ struct NodeEstimate {
 /// What the first node of a part of a chain has to do with what comes after the part: all of it
 /// goes through the node behind the part and the border. Of the estimates from the part and a
 /// little more, `first` and `behind`,
-///   node - first = F ((node behind, border) - behind) + e,  e with covariance Q,
-/// and e has nothing to do with anything after the part.
+///   node - first = F ((node behind, border) - behind) + e,
+/// `dependence` has F and the covariance of e, which has nothing to do with what is after the part.
 struct PartLink {
   NodeEstimate first;   ///< its covariance: only at the end of a chain, where nothing comes behind
   NodeEstimate behind;  ///< without covariance
-  state::NodeByState F;
-  state::NodeMatrix Q = state::NodeMatrix::Zero();
+  Dependence dependence;
   bool ends_chain = false;
 };
 
