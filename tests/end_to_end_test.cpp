@@ -144,7 +144,7 @@ TEST_F(Trip, RunWritesSolutionMetricsAndReport) {
   EXPECT_THAT(last_line(run.out), StartsWith("verdict    trustworthy"));
 
   const json m = metrics("run");
-  EXPECT_EQ(m["method"], "refined");
+  EXPECT_EQ(m["method"], "batch") << "the best there is";
   EXPECT_EQ(m["epochs"], solution.rows());
   EXPECT_NEAR(m["duration_s"], 150, 20);
   EXPECT_EQ(m["trustworthy"], true);
@@ -173,6 +173,33 @@ TEST_F(Trip, EveryMethodRuns) {
     EXPECT_EQ(metrics(method)["method"], method);
     EXPECT_LT(metrics(method)["reference"]["horizontal_rmse_m"], 0.02) << method;
     EXPECT_FALSE(fs::exists(out + "/report"));
+  }
+}
+
+/// The forward run beside the smoothed one is the one that `ekf` gives.
+TEST_F(Trip, ASmootherTellsItsForwardRun) {
+  for (const std::string method : {"batch", "rts", "ekf"}) {
+    const Outcome run = foucault({"run", log_, "--method", method, "--set", "calibrate.mode=none",
+                                  "--out", folder_ / method});
+    ASSERT_EQ(run.exit_code, 0) << method << ": " << run.err;
+    EXPECT_EQ(run.out.find("forward    ekf: RMS error") != std::string::npos, method != "ekf");
+    EXPECT_EQ(fs::exists(folder_ / method + "/report/position_separation.png"), method != "ekf");
+  }
+  EXPECT_FALSE(metrics("ekf").contains("forward"));
+  const json expected = metrics("ekf");
+  for (const std::string method : {"batch", "rts"}) {
+    const json m = metrics(method);
+    const json& forward = m["forward"];
+    EXPECT_EQ(forward["method"], "ekf");
+    EXPECT_EQ(forward["epochs"], expected["epochs"]);
+    for (const char* key : {"horizontal_rmse_m", "heading_rmse_deg", "velocity_nees"}) {
+      const double value = expected["reference"][key];
+      EXPECT_NEAR(forward["reference"][key], value, 1e-6 * value) << method << " " << key;
+    }
+    EXPECT_EQ(forward["consistency"]["nis"], m["consistency"]["nis"]);
+    EXPECT_LT(m["reference"]["horizontal_rmse_m"], forward["reference"]["horizontal_rmse_m"]);
+    EXPECT_GT(forward["separation"]["position_rms_m"]["north"], 1e-3);
+    EXPECT_LT(forward["separation"]["position_rms_m"]["north"], 0.05);
   }
 }
 

@@ -84,9 +84,9 @@ std::unique_ptr<state::Estimator> make_batch(const Settings& settings,
   alignment::Aligner aligner(settings.alignment, settings.imu.noise(), mounting,
                              settings.calibrate.layout());
   return navigation::make_smoother(
-      std::make_unique<fgo::BatchRecorder>(first_estimate(settings), settings.fgo,
-                                           settings.batch.preintegration_model(),
-                                           settings.imu.noise(), settings.calibrate.layout()),
+      std::make_unique<fgo::BatchRecorder>(
+          first_estimate(settings), settings.fgo, settings.batch.preintegration_model(),
+          settings.imu.noise(), settings.calibrate.layout(), settings.passes),
       std::move(aligner), run_options(settings, mounting), sink);
 }
 
@@ -103,22 +103,22 @@ std::unique_ptr<state::Estimator> drive(std::unique_ptr<measurement::Navigator> 
 
 const std::vector<Method>& methods() {
   static const std::vector<Method> all{
-      {"ekf", "error-state Kalman filter on a full mechanization (the paper's M0)", make_ekf,
-       Stage::mechanize},
-      {"refined", "factor graph, preintegration on a rotating Earth (the paper's M1)",
-       make_window<preintegration::PreintegrationModel::refined>, Stage::preintegrate},
-      {"rough", "factor graph, the Earth's rotation neglected (M2)",
-       make_window<preintegration::PreintegrationModel::rough>, Stage::preintegrate},
-      {"full", "refined with the gravity vector of each place: exact over any distance",
-       make_window<preintegration::PreintegrationModel::full>, Stage::preintegrate},
+      {"batch",
+       "the default: one factor graph over the whole log, from the filter's run forward: every "
+       "epoch from all fixes (memory: 6 kB an epoch)",
+       make_batch, Stage::propagate, kForever},
       {"rts",
        "the filter forward, then a smoother backward: every epoch from all fixes "
        "(memory: 6 kB an epoch)",
        make_rts, Stage::mechanize, kForever},
-      {"batch",
-       "one factor graph over the whole log: every epoch from all fixes "
-       "(memory: 6 kB an epoch)",
-       make_batch, Stage::propagate, kForever},
+      {"ekf", "error-state Kalman filter on a full mechanization (the paper's M0)", make_ekf,
+       Stage::mechanize},
+      {"refined", "sliding factor graph, preintegration on a rotating Earth (the paper's M1)",
+       make_window<preintegration::PreintegrationModel::refined>, Stage::preintegrate},
+      {"rough", "the same with the Earth's rotation neglected (the paper's M2)",
+       make_window<preintegration::PreintegrationModel::rough>, Stage::preintegrate},
+      {"full", "refined with the gravity vector of each place: exact over any distance",
+       make_window<preintegration::PreintegrationModel::full>, Stage::preintegrate},
   };
   return all;
 }
@@ -128,6 +128,11 @@ const Method& find_method(const std::string& name) {
     if (method.name == name) return method;
   }
   throw UsageError(fmt::format("unknown method '{}'; known: {}", name, method_names()));
+}
+
+std::string forward_method(const std::string& name, const Settings& settings) {
+  if (name == "batch") return settings.batch.start;
+  return name == "rts" ? "ekf" : "";
 }
 
 std::string method_names() {

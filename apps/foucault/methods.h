@@ -24,6 +24,9 @@ struct Method {
   double keep_references_s = 600;
 };
 
+/// What a user gets who names none: the best there is.
+inline const std::string kDefaultMethod = "batch";
+
 /// In the order shown to users.
 const std::vector<Method>& methods();
 
@@ -34,6 +37,9 @@ std::unique_ptr<state::Estimator> drive(std::unique_ptr<measurement::Navigator> 
 
 /// Throws UsageError naming the known methods.
 const Method& find_method(const std::string& name);
+
+/// The method that a smoother runs forward; empty for one that does not smooth.
+std::string forward_method(const std::string& name, const Settings& settings);
 
 /// The names, for help: "refined, rough".
 std::string method_names();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <string>
 
 #include "foucault/alignment/alignment.h"
@@ -45,6 +46,8 @@ class Settings : public Configurable {
   state::CalibrateOptions calibrate;
   fgo::FgoOptions fgo;
   fgo::BatchOptions batch;
+  /// For a log of any length, if its smoothed epochs may be gone through twice; no key.
+  std::shared_ptr<fgo::BatchPasses> passes;
   ekf::EkfOptions ekf;
   rawlog::RawlogOptions rawlog;
   evaluation::OutageOptions outages;  ///< for evaluate and tune

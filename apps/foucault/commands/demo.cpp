@@ -45,7 +45,7 @@ void main_job(const PaperExperiment& experiment, const std::filesystem::path& re
   std::filesystem::create_directories(folder);
   const RunResult result = run_into(job, folder, call.console);
   call.console.say(
-      fmt::format("One trip with an {} processed by refined", job.settings.imu.preset));
+      fmt::format("One trip with an {} processed by {}", job.settings.imu.preset, job.method));
   for (const std::string& line : summary_lines(result)) {
     const bool names_staging = line.find(folder.string()) != std::string::npos;
     if (!names_staging) call.console.say(line);
@@ -94,7 +94,7 @@ std::function<void(Call&)> declare_demo(CLI::App& app) {
   add_output_option(app, o->out, "Folder for recordings, solution, tables and reports")
       ->capture_default_str();
   app.footer(
-      "\nSimulates a car with the four IMUs of the paper, processes one trip from recording to\n"
+      "\nSimulates a car with the four IMUs of the paper, smooths one trip from recording to\n"
       "report (DIR/trip), then withholds GNSS for 60 s every 150 s and compares the drift of ekf,\n"
       "refined and rough: Tables III and IV, with the noise that was simulated (DIR/report) and\n"
       "with noise tuned for each method (DIR/tuned/report).\n"

@@ -21,7 +21,7 @@ const std::vector<std::string> kPaperMethods{"ekf", "refined", "rough"};
 
 struct EvaluateOptions {
   std::vector<std::string> logs;
-  std::vector<std::string> methods = kPaperMethods;
+  std::vector<std::string> methods{"ekf", kDefaultMethod};
   ConfigArguments config;
   StoreArguments store;
   int jobs = evaluation::processor_count();

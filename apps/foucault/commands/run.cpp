@@ -46,7 +46,7 @@ std::function<void(Call&)> declare_run(CLI::App& app) {
   app.footer(
       "\nExamples:\n"
       "  foucault run trip.rawlog --out trip\n"
-      "  foucault run trip.rawlog --method rough --set imu.preset=ICM20602 --out trip-rough\n"
+      "  foucault run trip.rawlog --method refined --set imu.preset=ICM20602 --out trip-refined\n"
       "  foucault run trip.rawlog --config car.yaml --set output.rate=imu --out trip\n"
       "The configuration that was in force is written to DIR/config.yaml, ready for --config.");
   return [o](Call& call) {

@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <optional>
+#include <utility>
 #include <variant>
 
 #include "foucault/content/run_report.h"
@@ -93,6 +94,59 @@ void write_report(const RunResult& result, content::RunReport& report,
   report.write((folder / "report").string());
 }
 
+/// One way of a log through an estimator.
+struct RunPass {
+  RunPass(const RunJob& job, const Settings& settings, const std::string& config,
+          const std::filesystem::path& folder, Console& console)
+      : source(job.log, settings.imu.sample_kind(), settings.rawlog),
+        known(told(settings, source)) {
+    const Method& method = find_method(job.method);
+    const state::Mounting mounting = source.mounting().with(known.layout);
+    if (job.report) report.emplace(labels(job, config), mounting, known);
+    output.emplace(folder, mounting, settings.output, method.keep_references_s,
+                   report ? &*report : nullptr, console);
+    const std::unique_ptr<state::Estimator> estimator =
+        method.make(settings, source.mounting(), *output);
+    process(job.log, source, *estimator, method.per_sample, *output, console);
+  }
+
+  rawlog::RawlogSource source;
+  state::Told known;
+  std::optional<content::RunReport> report;
+  std::optional<RunOutput> output;
+};
+
+/// A log that was smoothed in parts is gone through again, with what is known at its end.
+bool goes_again(fgo::BatchPasses& passes, Console& console) {
+  if (passes.is_final()) return false;
+  console.say("smoothing  in parts (batch.memory_mb): a second pass, with what the first found");
+  passes = {passes.most_nodes, std::move(passes.found), {}, false};
+  return true;
+}
+
+/// Writes all but what the report draws.
+RunResult result_of(RunPass& pass, const RunJob& job, const Settings& settings) {
+  RunResult result;
+  result.method = job.method;
+  result.command_line = job.command_line;
+  result.imu = settings.imu.preset;
+  result.log = std::filesystem::path(job.log).filename().string();
+  result.out = job.out;
+  result.report = job.report;
+  result.statistics_from_s = settings.output.statistics_from_s;
+  result.metrics = pass.output->finish();
+  result.forward = pass.output->forward(forward_method(job.method, settings));
+  result.facts = pass.output->facts();
+  result.damage = pass.source.damage();
+  if (result.metrics.epochs == 0) {
+    if (result.damage) throw DataError(*result.damage);
+    throw DataError(fmt::format("'{}': no epoch came out of the data", job.log));
+  }
+  result.calibration = evaluation::calibrated_blocks(
+      state::as_users_know(pass.output->last_epoch(), pass.known), pass.known.layout);
+  return result;
+}
+
 }  // namespace
 
 RunResult run_into(const RunJob& job, const std::filesystem::path& folder, Console& console) {
@@ -104,38 +158,16 @@ RunResult run_into(const RunJob& job, const std::filesystem::path& folder, Conso
     console.say(fmt::format("{:<10} {}; nearest preset {}", "noise", noise_text(settings),
                             settings.imu.preset));
   const std::string config = dump_config(settings);
-  const Method& method = find_method(job.method);
+  settings.passes = std::make_shared<fgo::BatchPasses>();
+  settings.passes->most_nodes = settings.batch.most_nodes(settings.calibrate.layout());
+  std::optional<RunPass> pass;
+  do {
+    pass.emplace(job, settings, config, folder, console);
+  } while (goes_again(*settings.passes, console));
 
-  rawlog::RawlogSource source(job.log, settings.imu.sample_kind(), settings.rawlog);
-  const state::Told known = told(settings, source);
-  std::optional<content::RunReport> report;
-  const state::Mounting mounting = source.mounting().with(known.layout);
-  if (job.report) report.emplace(labels(job, config), mounting, known);
-  RunOutput output(folder, mounting, settings.output, method.keep_references_s,
-                   report ? &*report : nullptr, console);
-  const std::unique_ptr<state::Estimator> estimator =
-      method.make(settings, source.mounting(), output);
-  process(job.log, source, *estimator, method.per_sample, output, console);
-
-  RunResult result;
-  result.method = job.method;
-  result.command_line = job.command_line;
-  result.imu = settings.imu.preset;
-  result.log = std::filesystem::path(job.log).filename().string();
-  result.out = job.out;
-  result.report = job.report;
-  result.statistics_from_s = settings.output.statistics_from_s;
-  result.metrics = output.finish();
-  result.facts = output.facts();
-  result.damage = source.damage();
-  if (result.metrics.epochs == 0) {
-    if (result.damage) throw DataError(*result.damage);
-    throw DataError(fmt::format("'{}': no epoch came out of the data", job.log));
-  }
-  result.calibration =
-      evaluation::calibrated_blocks(state::as_users_know(output.last_epoch(), known), known.layout);
+  RunResult result = result_of(*pass, job, settings);
   result.resources = meter.used();
-  if (report) write_report(result, *report, folder, console);
+  if (pass->report) write_report(result, *pass->report, folder, console);
   if (profile) result.profile = profile->times();
   exports::write_text_file(folder / "metrics.json", metrics_json(result));
   exports::write_text_file(folder / "config.yaml", config);

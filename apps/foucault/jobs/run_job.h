@@ -8,7 +8,9 @@
 #include "console.h"
 #include "foucault/core/profile.h"
 #include "foucault/evaluation/run_metrics.h"
+#include "jobs/forward_run.h"
 #include "jobs/run_facts.h"
+#include "methods.h"
 #include "resources.h"
 #include "settings.h"
 
@@ -17,7 +19,7 @@ namespace foucault::app {
 /// One log, one method.
 struct RunJob {
   std::string log;
-  std::string method = "refined";
+  std::string method = kDefaultMethod;
   Settings settings;
   std::string out;       ///< folder
   bool report = true;    ///< draw the figures
@@ -31,6 +33,7 @@ struct RunResult {
   std::string out;
   bool report = true;
   evaluation::RunMetrics metrics;
+  std::optional<ForwardResult> forward;  ///< of a smoother
   std::vector<evaluation::CalibratedBlock> calibration;
   double statistics_from_s = 0;
   RunFacts facts;

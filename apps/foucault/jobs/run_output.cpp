@@ -34,6 +34,10 @@ RunOutput::RunOutput(const std::filesystem::path& folder, const state::Mounting&
             reference_error(epoch, error);
           },
           comparison_options(keep_references_s)),
+      forward_(mounting,
+               [this](const state::Separation& separation) {
+                 if (report_ != nullptr) report_->separation(separation);
+               }),
       facts_(mounting),
       report_(report),
       console_(console) {}
@@ -47,6 +51,7 @@ void RunOutput::measurement(const Measurement& measurement) {
     reference_.fix();
   } else if (const auto* reference = std::get_if<ReferencePose>(&measurement)) {
     comparison_.add(*reference);
+    forward_.reference(*reference);
     reference_.add(*reference);
   }
 }
@@ -57,10 +62,11 @@ void RunOutput::start(int64_t t_ns) {
 }
 
 void RunOutput::start_metrics(int64_t first_fix_ns) {
-  metrics_.emplace(mounting_, first_fix_ns + nanoseconds(statistics_from_s_),
-                   [this](const NormalizedSquare& square) {
-                     if (report_ != nullptr) report_->normalized_square(square);
-                   });
+  const int64_t from_ns = first_fix_ns + nanoseconds(statistics_from_s_);
+  forward_.start(from_ns);
+  metrics_.emplace(mounting_, from_ns, [this](const NormalizedSquare& square) {
+    if (report_ != nullptr) report_->normalized_square(square);
+  });
 }
 
 void RunOutput::epoch(const state::Epoch& epoch) {
@@ -71,6 +77,7 @@ void RunOutput::epoch(const state::Epoch& epoch) {
   const StageTimer timer(Stage::statistics);
   if (metrics_) metrics_->epoch(epoch);
   comparison_.add(epoch);
+  forward_.smoothed(epoch);
 }
 
 void RunOutput::write(const state::Epoch& epoch) {
@@ -88,6 +95,7 @@ void RunOutput::collect(const state::Epoch& epoch) {
 void RunOutput::fix(const state::FixResult& fix) {
   if (report_ != nullptr) report_->fix(fix);
   if (metrics_) metrics_->fix(fix);
+  forward_.fix(fix);
 }
 
 void RunOutput::observation(const state::ObservationResult& result) {

@@ -9,14 +9,15 @@
 #include "foucault/evaluation/run_metrics.h"
 #include "foucault/export/reference_tum.h"
 #include "foucault/export/solution_writer.h"
-#include "foucault/state/interfaces.h"
+#include "foucault/state/forward_sink.h"
+#include "jobs/forward_run.h"
 #include "jobs/run_facts.h"
 #include "settings.h"
 
 namespace foucault::app {
 
 /// Where everything that comes out of a run goes: solution files, metrics, report, console.
-class RunOutput : public state::Sink {
+class RunOutput : public state::ForwardSink {
  public:
   /// `keep_references_s`: how far epochs may lag behind references. `report` may be null; it and
   /// the console must outlive this.
@@ -28,6 +29,7 @@ class RunOutput : public state::Sink {
   void measurement(const Measurement& measurement);
 
   void epoch(const state::Epoch& epoch) override;
+  void forward_epoch(const state::Epoch& epoch) override { forward_.epoch(epoch); }
   void fix(const state::FixResult& fix) override;
   void observation(const state::ObservationResult& result) override;
   void notice(const state::Notice& notice) override;
@@ -40,6 +42,10 @@ class RunOutput : public state::Sink {
 
   /// Completes the files, and what the report needs.
   evaluation::RunMetrics finish();
+  /// None if there was no forward run.
+  std::optional<ForwardResult> forward(const std::string& method) const {
+    return forward_.result(method);
+  }
   const state::Epoch& last_epoch() const { return last_epoch_; }
   const RunFacts& facts() const { return facts_; }
 
@@ -57,6 +63,7 @@ class RunOutput : public state::Sink {
   exports::ReferenceTum reference_;
   evaluation::ReferenceComparison comparison_;
   std::optional<evaluation::RunMetricsCollector> metrics_;  ///< from the first fix on
+  ForwardRun forward_;
   state::Epoch last_epoch_;
   RunFacts facts_;
   content::RunReport* report_;

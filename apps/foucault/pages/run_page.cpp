@@ -105,11 +105,12 @@ std::string lever_arm_text(const RunResult& result) {
                      arm.y(), arm.z());
 }
 
-std::string separation_text(const RunResult& result) {
-  const bool smooths = result.method == "rts" || result.method == "batch";
-  return smooths
-             ? "the run forward is not kept; run --method ekf and see `foucault compare`"
-             : fmt::format("none: {} runs forward only; rts and batch go both ways", result.method);
+std::string smoothing_text(const RunResult& result) {
+  if (result.forward) {
+    return fmt::format("{} forward; {}", result.forward->method,
+                       separation_text(result.forward->separation));
+  }
+  return fmt::format("none: {} runs forward only; batch and rts smooth", result.method);
 }
 
 std::string warnings_text(const RunFacts& facts) {
@@ -150,7 +151,7 @@ page::Table summary_table(const RunResult& result) {
       {"Sigma, vertical", level_text(f.vertical_sigma_m, 1, 4, " m")},
       {"Sigma, roll and pitch", level_text(f.tilt_sigma_rad, units::kDegrees, 4, "°")},
       {"Sigma, heading", level_text(f.heading_sigma_rad, units::kDegrees, 4, "°")},
-      {"Forward against backward", separation_text(result)},
+      {"Smoothed against forward", smoothing_text(result)},
       {"IMU (its noise)", result.imu},
       {"Lever arm, IMU to antenna", lever_arm_text(result)},
       {"Frame, height", "of the receiver, taken as WGS-84; heights above its ellipsoid"},

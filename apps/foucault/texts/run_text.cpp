@@ -73,6 +73,20 @@ Json facts_json(const RunFacts& facts) {
       .with("notices_seen", facts.notices_seen);
 }
 
+/// What a reader needs to compare the two.
+Json forward_json(const ForwardResult& forward) {
+  const Json all = exports::run_metrics_json(forward.metrics, {});
+  Json json = Object().with("method", forward.method).with("epochs", forward.metrics.epochs);
+  for (const char* key : {"reference", "reference_elsewhere_m"}) {
+    if (all.contains(key)) json[key] = all[key];
+  }
+  for (const auto& [key, value] : all["consistency"].items()) {
+    if (key == "nis" || key.find("nees") != std::string::npos) json["consistency"][key] = value;
+  }
+  json["separation"] = exports::separation_json(forward.separation);
+  return json;
+}
+
 Json libraries_json() {
   return Object()
       .with("mrpt", kMrptVersion)
@@ -95,7 +109,27 @@ std::string attitude_text(const evaluation::ReferenceMetrics& r) {
                      *r.heading_rmse * units::kDegrees);
 }
 
+std::string reference_text(const evaluation::ReferenceMetrics& r) {
+  return fmt::format("RMS error horizontal {:.3f} m, vertical {:.3f} m{}", r.horizontal_rmse,
+                     r.vertical_rmse, attitude_text(r));
+}
+
+std::string forward_text(const ForwardResult& forward) {
+  const std::string apart = separation_text(forward.separation);
+  if (!forward.metrics.reference) return fmt::format("{}; {}", forward.method, apart);
+  return fmt::format("{}: {}; {}", forward.method, reference_text(*forward.metrics.reference),
+                     apart);
+}
+
 }  // namespace
+
+std::string separation_text(const evaluation::SeparationMetrics& separation) {
+  return fmt::format(
+      "smoothed less forward, RMS: horizontal {:.3f} m, vertical {:.3f} m, "
+      "heading {:.3f} deg",
+      separation.position_rms_n.head<2>().norm(), separation.position_rms_n.z(),
+      separation.euler_rms.z() * units::kDegrees);
+}
 
 std::string size_text(const RunResult& result) {
   const SquareConsistency& nis = result.metrics.consistency.nis;
@@ -106,6 +140,7 @@ std::string size_text(const RunResult& result) {
 std::string metrics_json(const RunResult& result) {
   Json json = Object().with("method", result.method).with("schema_version", kSchemaVersion);
   json.update(exports::run_metrics_json(result.metrics, result.calibration));
+  if (result.forward) json["forward"] = forward_json(*result.forward);
   json.update(facts_json(result.facts));
   json["statistics_from_s"] = result.statistics_from_s;
   json["cpu_s"] = result.resources.cpu_s;
@@ -135,13 +170,12 @@ std::vector<std::string> metrics_lines(const RunResult& result) {
                                 fmt::join(b.value, " "), fmt::join(b.sigma, " ")));
   }
   if (m.reference) {
-    lines.push_back(fmt::format("reference  RMS error horizontal {:.3f} m, vertical {:.3f} m{}",
-                                m.reference->horizontal_rmse, m.reference->vertical_rmse,
-                                attitude_text(*m.reference)));
+    lines.push_back("reference  " + reference_text(*m.reference));
   } else if (m.reference_elsewhere_m) {
     lines.push_back(fmt::format("reference  of another place, {:.4g} km away (RMS); not compared",
                                 *m.reference_elsewhere_m / 1000));
   }
+  if (result.forward) lines.push_back("forward    " + forward_text(*result.forward));
   lines.push_back(fmt::format("resources  {:.1f} s wall, {:.1f} s CPU, {:.0f} MB",
                               result.resources.wall_s, result.resources.cpu_s,
                               result.resources.peak_rss_mb));

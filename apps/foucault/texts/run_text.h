@@ -13,6 +13,9 @@ std::string metrics_json(const RunResult& result);
 
 std::vector<std::string> metrics_lines(const RunResult& result);
 
+/// How far smoothed and forward run lie apart.
+std::string separation_text(const evaluation::SeparationMetrics& separation);
+
 /// Whether the run can be believed, and why.
 std::string verdict_line(const RunResult& result);
 

@@ -244,7 +244,8 @@ RunData::RunData(const state::Mounting& mounting, const state::Told& told, doubl
                       {},
                       DecimatedTable(columns)});
   }
-  for (Triad* triad : {&position_error, &velocity_error, &attitude_error, &innovation, &postfit}) {
+  for (Triad* triad : {&position_error, &velocity_error, &attitude_error, &position_separation,
+                       &velocity_separation, &attitude_separation, &innovation, &postfit}) {
     triad->statistics_from = statistics_from;
   }
 }
@@ -263,7 +264,8 @@ void RunData::mark_gap() {
   track.add_gap();
   speed_and_height.add_gap();
   for (Triad* triad : {&position, &velocity, &attitude, &vehicle_velocity, &gyro_bias, &accel_bias,
-                       &position_error, &velocity_error, &attitude_error}) {
+                       &position_error, &velocity_error, &attitude_error, &position_separation,
+                       &velocity_separation, &attitude_separation}) {
     triad->rows.add_gap();
   }
   for (BlockHistory& block : blocks) block.rows.add_gap();
@@ -385,6 +387,13 @@ void RunData::add(const state::Epoch& epoch, const state::ReferenceError& error)
     attitude_error.add(t, kDegrees * *error.euler,
                        kDegrees * vehicle_attitude(epoch, mounting_).sigma);
   }
+}
+
+void RunData::add(const state::Separation& s) {
+  const double t = seconds(s.t_ns);
+  position_separation.add(t, s.position_n, s.position_sigma);
+  velocity_separation.add(t, s.velocity_n, s.velocity_sigma);
+  attitude_separation.add(t, kDegrees * s.euler, kDegrees * s.euler_sigma);
 }
 
 void RunData::add(const Measurement& measurement) {

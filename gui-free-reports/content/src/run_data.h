@@ -14,6 +14,7 @@
 #include "foucault/plot/decimation.h"
 #include "foucault/state/interfaces.h"
 #include "foucault/state/result.h"
+#include "foucault/state/separation.h"
 #include "foucault/state/told_blocks.h"
 #include "imu_spectrum.h"
 
@@ -188,6 +189,7 @@ class RunData {
   /// What sensors told, before anything is made of it.
   void add(const Measurement& measurement);
   void add(const state::Epoch& epoch, const state::ReferenceError& error);
+  void add(const state::Separation& separation);
   void add(const NormalizedSquare& square);
   void add_imu_stamp(int64_t t_ns);
   void add_outage(int64_t begin_ns, int64_t end_ns);
@@ -217,6 +219,9 @@ class RunData {
   Triad position_error;       ///< north, east, down [m]
   Triad velocity_error;       ///< north, east, down [m/s]
   Triad attitude_error;       ///< roll, pitch, heading [deg]
+  Triad position_separation;  ///< smoothed less forward, as the errors
+  Triad velocity_separation;
+  Triad attitude_separation;
   Triad innovation;           ///< used fixes, north, east, down [m]
   Triad rejected_innovation;  ///< as innovation
   Triad postfit;              ///< used fixes; sigma not known

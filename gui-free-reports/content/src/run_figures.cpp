@@ -112,6 +112,22 @@ constexpr std::array<TriadFigure, 3> kErrors{{
      "error", "°", kEuler, 0, true},
 }};
 
+constexpr std::array<TriadFigure, 3> kSeparations{{
+    {&RunData::position_separation, "position_separation", "Position, smoothed less forward",
+     "What the fixes that came later changed. The bounds are what they may change: the sigmas of "
+     "the forward run less those of the smoothed one, squared, which end at the last fix. Beyond "
+     "the bounds, the forward run thought itself better than it was: a fix was wrong, or it had "
+     "taken for known what came out otherwise (a lever arm, a scale).",
+     "separation", "m", kNed, 0, true},
+    {&RunData::velocity_separation, "velocity_separation", "Velocity, smoothed less forward",
+     "What the fixes that came later changed, local north-east-down, with 3-sigma bounds.",
+     "separation", "m/s", kNed, 0, true},
+    {&RunData::attitude_separation, "attitude_separation", "Attitude, smoothed less forward",
+     "What the fixes that came later changed, vehicle axes, with 3-sigma bounds. The heading is "
+     "what a forward run learns last.",
+     "separation", "°", kEuler, 0, true},
+}};
+
 constexpr std::array<TriadFigure, 2> kBiases{{
     {&RunData::gyro_bias, "gyro_bias", "Gyroscope bias",
      "Bias on the axes of the IMU with 3-sigma bounds. After the first manoeuvres it should move "
@@ -180,7 +196,7 @@ Panel triad_panel(const RunData& data, const TriadFigure& look, const DecimatedT
   panel.y.least_span = look.least_span;
   panel.series = {
       bounds(curve.t, look.is_error ? zero : curve.value, curve.sigma, column + " 3 sigma"),
-      line(look.is_error ? "error" : "estimate", Ink::blue, curve.t, curve.value)};
+      line(look.is_error ? look.noun : "estimate", Ink::blue, curve.t, curve.value)};
   panel.series.back().column = column;
   return panel;
 }
@@ -361,6 +377,10 @@ std::vector<Figure> vehicle_figures(const RunData& data, const std::string& subt
 
 std::vector<Figure> error_figures(const RunData& data, const std::string& subtitle) {
   return triad_figures(data, kErrors, subtitle);
+}
+
+std::vector<Figure> separation_figures(const RunData& data, const std::string& subtitle) {
+  return triad_figures(data, kSeparations, subtitle);
 }
 
 std::vector<Figure> bias_figures(const RunData& data, const std::string& subtitle) {

@@ -17,6 +17,8 @@ std::vector<plot::Figure> solution_figures(const RunData& data, const std::strin
 std::vector<plot::Figure> vehicle_figures(const RunData& data, const std::string& subtitle);
 /// Position, velocity and attitude less those of the reference.
 std::vector<plot::Figure> error_figures(const RunData& data, const std::string& subtitle);
+/// The same of a smoother less those of its forward run.
+std::vector<plot::Figure> separation_figures(const RunData& data, const std::string& subtitle);
 std::vector<plot::Figure> bias_figures(const RunData& data, const std::string& subtitle);
 std::optional<plot::Figure> innovation_figure(const RunData& data, const std::string& subtitle);
 std::optional<plot::Figure> postfit_figure(const RunData& data, const std::string& subtitle);

@@ -146,13 +146,17 @@ class RunReport::Collector {
          {overview(), timeline_section(data, subtitle()),
           Section{"Errors", error_words(data), error_statistics(data),
                   error_figures(data, subtitle())},
+          Section{"Smoothed against forward",
+                  {},
+                  separation_statistics(data),
+                  separation_figures(data, subtitle())},
           consistency_section(data, subtitle()), gnss(), aids_section(data, aids, subtitle()),
           calibration_section(data, subtitle()), solution(),
           Section{"Sensor biases", {}, {}, bias_figures(data, subtitle())}, health()}) {
       if (has_content(section)) page.sections.push_back(section);
     }
     if (!page.sections.empty()) {
-      page.sections.push_back({"Not shown", {}, {missing_figures(page, data, labels.method)}});
+      page.sections.push_back({"Not shown", {}, {missing_figures(page, data)}});
     }
     if (!labels.command.empty()) page.listings.push_back({"Command", labels.command});
     if (!labels.config.empty()) page.listings.push_back({"Configuration", labels.config});
@@ -187,6 +191,10 @@ void RunReport::notice(const state::Notice& notice) { collector_->data.add(notic
 
 void RunReport::reference_error(const state::Epoch& epoch, const state::ReferenceError& error) {
   collector_->data.add(epoch, error);
+}
+
+void RunReport::separation(const state::Separation& separation) {
+  collector_->data.add(separation);
 }
 
 void RunReport::normalized_square(const NormalizedSquare& square) { collector_->data.add(square); }

@@ -27,6 +27,14 @@ const std::vector<StatisticsLook> kErrorLooks{
     {"Velocity error", &RunData::velocity_error, "m/s", kNed},
     {"Attitude error", &RunData::attitude_error, "°", {"Roll", "Pitch", "Heading"}}};
 
+const std::vector<StatisticsLook> kSeparationLooks{
+    {"Position, smoothed less forward", &RunData::position_separation, "m", kNed},
+    {"Velocity, smoothed less forward", &RunData::velocity_separation, "m/s", kNed},
+    {"Attitude, smoothed less forward",
+     &RunData::attitude_separation,
+     "°",
+     {"Roll", "Pitch", "Heading"}}};
+
 const std::vector<StatisticsLook> kInnovationLooks{
     {"Innovations of used fixes", &RunData::innovation, "m", kNed},
     {"Residuals after use", &RunData::postfit, "m", kNed}};
@@ -62,6 +70,10 @@ std::vector<Table> tables_of(const RunData& data, const std::vector<StatisticsLo
 }  // namespace
 
 std::vector<Table> error_statistics(const RunData& data) { return tables_of(data, kErrorLooks); }
+
+std::vector<Table> separation_statistics(const RunData& data) {
+  return tables_of(data, kSeparationLooks);
+}
 
 std::vector<std::string> error_words(const RunData& data) {
   const AxisStatistics& s = data.attitude_error.statistics;

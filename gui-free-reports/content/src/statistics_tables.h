@@ -10,6 +10,8 @@ namespace foucault::content {
 
 /// Mean, RMS, median, 95 % and maximum by axis of the errors against a reference; empty without.
 std::vector<page::Table> error_statistics(const RunData& data);
+/// The same of a smoother less its forward run.
+std::vector<page::Table> separation_statistics(const RunData& data);
 /// Names angles that differ from the reference by a constant far above their sigmas: axes that are
 /// not the same.
 std::vector<std::string> error_words(const RunData& data);

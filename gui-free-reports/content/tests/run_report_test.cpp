@@ -82,6 +82,25 @@ TEST(RunReport, BoundsAreThreeSigma) {
   EXPECT_NEAR(band.lower.front(), -3 * sigma_at_start, 1e-12);
 }
 
+TEST(RunReport, SmoothedAgainstForwardIsDrawnWithWhatItMayChange) {
+  RunReport report(kLabels, state::Mounting{});
+  for (int t = 0; t < 3; ++t) {
+    state::Separation separation;
+    separation.t_ns = nanoseconds(t);
+    separation.position_n = {0.3, 0, -0.1};
+    separation.position_sigma = {0.2, 0.1, 0.1};
+    separation.euler.z() = 0.01;
+    report.separation(separation);
+  }
+  const ReportPage page = report.page();
+  const Panel& north = figure_of(page, "position_separation").panels.at(0);
+  EXPECT_NEAR(series_of(north, "±3σ").upper.front(), 0.6, 1e-12);
+  const Section& section = section_of(page, "Smoothed against forward");
+  EXPECT_EQ(section.figures.size(), 3U);
+  EXPECT_EQ(section.tables.at(0).rows.at(0).at(2), "0.300") << "RMS along north";
+  EXPECT_EQ(section.tables.at(2).rows.at(2).at(2), "0.573") << "of the heading, in degrees";
+}
+
 TEST(RunReport, PositionIsInMetresFromTheStart) {
   RunReport report(kLabels, state::Mounting{});
   state::Epoch epoch;
@@ -194,6 +213,7 @@ TEST(RunReport, SaysWhatIsNotShownAndWhy) {
                        [&](const auto& row) { return row.at(0) == what; });
   };
   EXPECT_TRUE(names("Errors of position, velocity, attitude"));
+  EXPECT_TRUE(names("Smoothed against forward"));
   EXPECT_FALSE(names("Innovations"));
   EXPECT_FALSE(find_figure(page, "raw_imu")) << "the demo hands over stamps alone";
   EXPECT_TRUE(names("IMU as recorded"));

@@ -169,4 +169,16 @@ Json run_metrics_json(const evaluation::RunMetrics& m,
   return json;
 }
 
+Json separation_json(const evaluation::SeparationMetrics& separation) {
+  const bool exists = separation.samples > 0;
+  const Eigen::Vector3d euler_deg = units::kDegrees * separation.euler_rms;
+  return Object()
+      .with("position_rms_m", north_east_down(separation.position_rms_n, exists))
+      .with("velocity_rms_m_s", north_east_down(separation.velocity_rms_n, exists))
+      .with("roll_rms_deg", json_if(exists, euler_deg[0]))
+      .with("pitch_rms_deg", json_if(exists, euler_deg[1]))
+      .with("heading_rms_deg", json_if(exists, euler_deg[2]))
+      .with("samples", separation.samples);
+}
+
 }  // namespace foucault::exports

@@ -1,6 +1,8 @@
 #include "foucault/fgo/batch.h"
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "graph_noise.h"
 #include "node_epoch.h"
@@ -21,6 +23,8 @@ void BatchOptions::fields(ConfigFields& f) {
   f.text("model", model, {"full", "refined", "rough"}, "preintegration of method batch");
   f.text("start", start, {"ekf", "full", "refined", "rough"},
          "forward method that gives the batch its first estimate");
+  f.number("memory_mb", memory_mb, {1, 1e6},
+           "of `run`: a log that takes more is smoothed in parts, in two passes");
 }
 
 preintegration::PreintegrationModel BatchOptions::preintegration_model() const {
@@ -29,13 +33,24 @@ preintegration::PreintegrationModel BatchOptions::preintegration_model() const {
                             : preintegration::PreintegrationModel::full;
 }
 
+std::size_t BatchOptions::most_nodes(const state::Layout& layout) const {
+  constexpr double kNode = 7500;  // [B], measured; and the covariance of what is smoothed
+  constexpr double kFewest = 64;
+  const auto size = static_cast<double>(layout.size());
+  const double node = kNode + sizeof(double) * size * (size + 1) / 2;
+  return static_cast<std::size_t>(std::max(kFewest, memory_mb * 1e6 / node));
+}
+
 BatchRecorder::BatchRecorder(std::unique_ptr<measurement::Navigator> forward,
                              const FgoOptions& options, preintegration::PreintegrationModel model,
-                             const imu::ImuNoise& noise, const state::Layout& layout)
+                             const imu::ImuNoise& noise, const state::Layout& layout,
+                             std::shared_ptr<BatchPasses> passes)
     : forward_(std::move(forward)),
       options_(options),
       context_{geodesy::LocalFrame(Geodetic{}), model, as_constants(layout)},
-      noise_(noise) {
+      noise_(noise),
+      passes_(std::move(passes)),
+      behind_(passes_ ? nodes_behind(passes_->known) : std::vector<NodeEstimate>()) {
   require_noise(noise);
 }
 
@@ -98,7 +113,7 @@ std::size_t BatchRecorder::mark() {
     close_interval();
     add_node(forward_->epoch());
   }
-  return passages_.size() - 1;
+  return size() - 1;
 }
 
 void BatchRecorder::add_node(const state::Epoch& now) {
@@ -129,18 +144,51 @@ void BatchRecorder::close_interval() {
   chains_.back().intervals.push_back(std::move(open_));
 }
 
+std::deque<measurement::SmoothedEpoch> BatchRecorder::settled() {
+  std::deque<measurement::SmoothedEpoch> out;
+  if (!passes_) return out;
+  while (chains_.size() > 1) smooth_first_chain(out);
+  if (!chains_.empty() && chains_.back().nodes.size() >= passes_->most_nodes) smooth_part(out);
+  return out;
+}
+
+void BatchRecorder::smooth_part(std::deque<measurement::SmoothedEpoch>& out) {
+  const std::size_t index = passes_->found.size();
+  const NodeEstimate* behind = index < behind_.size() ? &behind_[index] : nullptr;
+  BatchPart part = solve_part(chains_.back(), context_, options_, noise_, behind);
+  passes_->in_parts = true;
+  passes_->found.push_back(part.link);
+  give_out(part.solution, out);
+}
+
 std::deque<measurement::SmoothedEpoch> BatchRecorder::smoothed() {
   std::deque<measurement::SmoothedEpoch> out;
-  for (BatchChain& chain : chains_) {
-    BatchSolution solution = solve(chain, context_, options_, noise_);
-    for (std::size_t k = 0; k < chain.nodes.size(); ++k) {
-      const state::Epoch epoch = to_epoch(chain.nodes[k].t_ns, solution.x[k], solution.slow,
-                                          solution.covariance_w[k].full(), context_);
-      solution.covariance_w[k] = {};
-      out.push_back(smoothed_at(passages_[out.size()], epoch));
-    }
-  }
+  while (!chains_.empty()) smooth_first_chain(out);
   return out;
+}
+
+void BatchRecorder::smooth_first_chain(std::deque<measurement::SmoothedEpoch>& out) {
+  BatchSolution solution = solve(chains_.front(), context_, options_, noise_);
+  if (passes_) {
+    PartLink end;
+    end.first = {solution.x.front(), solution.slow, solution.covariance_w.front().full()};
+    end.ends_chain = true;
+    passes_->found.push_back(end);
+  }
+  give_out(solution, out);
+  chains_.pop_front();
+}
+
+void BatchRecorder::give_out(BatchSolution& solution, std::deque<measurement::SmoothedEpoch>& out) {
+  for (std::size_t k = 0; k < solution.x.size(); ++k) {
+    const Passage& passage = passages_.front();
+    const state::Epoch epoch = to_epoch(passage.predicted.t_ns, solution.x[k], solution.slow,
+                                        solution.covariance_w[k].full(), context_);
+    solution.covariance_w[k] = {};
+    out.push_back(smoothed_at(passage, epoch));
+    passages_.pop_front();
+    ++given_out_;
+  }
 }
 
 measurement::SmoothedEpoch BatchRecorder::smoothed_at(const Passage& passage,

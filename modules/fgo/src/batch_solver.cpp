@@ -64,6 +64,7 @@ class BatchSolver {
   bool renew_factors(const imu::ImuNoise& noise);
 
   BatchSolution solution();
+  BatchPart part(const NodeEstimate* behind);
 
  private:
   struct States {
@@ -96,6 +97,8 @@ class BatchSolver {
   Front sweep();
   template <class Each>
   void go_back(const Each& each);
+
+  void take_off(std::size_t nodes);
 
   bool reintegrate_turned(std::size_t k, const imu::ImuNoise& noise);
   bool move_earth(std::size_t k);
@@ -325,14 +328,90 @@ BatchSolution BatchSolver::solution() {
   return {std::move(at_.x), at_.slow, std::move(covariances)};
 }
 
+state::StateVector difference(const NodeEstimate& a, const NodeEstimate& b) {
+  return joined(state::boxminus(a.x, b.x), a.slow - b.slow);
+}
+
+BatchPart BatchSolver::part(const NodeEstimate* behind) {
+  const StageTimer timer(Stage::covariance);
+  next_ = {};
+  const std::size_t nodes = 3 * at_.x.size() / 4;
+  BatchPart out;
+  out.solution.slow = behind != nullptr ? behind->slow : at_.slow;
+  out.solution.x.resize(nodes);
+  out.solution.covariance_w.resize(nodes);
+  PartLink& link = out.link;
+  link.first = {at_.x.front(), at_.slow};
+  link.behind = {at_.x[nodes], at_.slow};
+  state::StateMatrix P = covariance(sweep().information);
+  state::StateVector d = state::StateVector::Zero(P.rows());
+  go_back([&](std::size_t k, const Pivot& pivot) {
+    P = pivot.covariance(P);
+    if (k > nodes) return;
+    if (k == nodes) {
+      link.dependence = on_itself(at_.slow.size());
+      if (behind == nullptr) return;
+      P = behind->covariance;
+      d = difference(*behind, link.behind);
+      return;
+    }
+    link.dependence = of_node_before(pivot, link.dependence);
+    const state::NodeVector own = -pivot.R.triangularView<Eigen::Upper>().solve(pivot.A * d);
+    state::node_part(d) = own;
+    out.solution.x[k] = state::boxplus(at_.x[k], own);
+    out.solution.covariance_w[k] = state::PackedSymmetric(P);
+  });
+  take_off(nodes);
+  return out;
+}
+
+/// What they know, with the observations of the next, becomes its prior.
+void BatchSolver::take_off(std::size_t nodes) {
+  Front front = first_front();
+  for (std::size_t k = 0; k < nodes; ++k) advance(k, front);
+  chain_.prior = to_prior(front.information, at_.x[nodes], at_.slow);
+  const auto gone = static_cast<std::ptrdiff_t>(nodes);
+  chain_.nodes.erase(chain_.nodes.begin(), chain_.nodes.begin() + gone);
+  chain_.intervals.erase(chain_.intervals.begin(), chain_.intervals.begin() + gone);
+  chain_.nodes.front().observations.clear();
+  for (std::size_t k = 0; k < chain_.nodes.size(); ++k) chain_.nodes[k].x = at_.x[nodes + k];
+}
+
+void minimize(BatchSolver& solver, const imu::ImuNoise& noise) {
+  solver.optimize();
+  for (int round = 0; round < kRounds && solver.renew_factors(noise); ++round) solver.optimize();
+}
+
 }  // namespace
+
+NodeEstimate through(const PartLink& link, const NodeEstimate& behind) {
+  const state::NodeVector moved = link.dependence.F * difference(behind, link.behind);
+  return {state::boxplus(link.first.x, moved), behind.slow,
+          covariance(link.dependence, behind.covariance)};
+}
+
+std::vector<NodeEstimate> nodes_behind(const std::vector<PartLink>& links) {
+  std::vector<NodeEstimate> behind(links.size());
+  NodeEstimate known;
+  for (std::size_t i = links.size(); i-- > 0;) {
+    behind[i] = known;
+    known = links[i].ends_chain ? links[i].first : through(links[i], known);
+  }
+  return behind;
+}
 
 BatchSolution solve(BatchChain& chain, const GraphContext& context, const FgoOptions& options,
                     const imu::ImuNoise& noise) {
   BatchSolver solver(chain, context, options);
-  solver.optimize();
-  for (int round = 0; round < kRounds && solver.renew_factors(noise); ++round) solver.optimize();
+  minimize(solver, noise);
   return solver.solution();
+}
+
+BatchPart solve_part(BatchChain& chain, const GraphContext& context, const FgoOptions& options,
+                     const imu::ImuNoise& noise, const NodeEstimate* behind) {
+  BatchSolver solver(chain, context, options);
+  minimize(solver, noise);
+  return solver.part(behind);
 }
 
 }  // namespace foucault::fgo

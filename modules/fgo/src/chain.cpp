@@ -145,6 +145,38 @@ Elimination eliminate(const NodeInformation& first, const IntervalRows& interval
   return out;
 }
 
+Dependence on_itself(Index slow) {
+  return {state::NodeByState::Identity(state::kNodeSize, state::kNodeSize + slow)};
+}
+
+Dependence of_node_before(const Conditional& before, const Dependence& node) {
+  const auto R = before.R.triangularView<Eigen::Upper>();
+  const state::NodeByState f = -R.solve(before.A);
+  const state::NodeMatrix f_node = f.leftCols<state::kNodeSize>();
+  const state::NodeMatrix root = R.solve(state::NodeMatrix::Identity());
+  const Index slow = f.cols() - state::kNodeSize;
+  Dependence out{f_node * node.F, root * root.transpose() + f_node * node.Q * f_node.transpose()};
+  out.F.rightCols(slow) += f.rightCols(slow);
+  return out;
+}
+
+state::StateMatrix covariance(const Dependence& node, const state::StateMatrix& later) {
+  const Index slow = later.rows() - state::kNodeSize;
+  const state::NodeByState FP = node.F * later;
+  state::StateMatrix P = later;
+  const state::NodeMatrix own = node.Q + FP * node.F.transpose();
+  state::node_part(P) = 0.5 * (own + own.transpose());
+  P.topRightCorner(state::kNodeSize, slow) = FP.rightCols(slow);
+  P.bottomLeftCorner(slow, state::kNodeSize) = FP.rightCols(slow).transpose();
+  return P;
+}
+
+state::StateVector joined(const state::NodeVector& node, const state::SlowVector& border) {
+  state::StateVector out(node.size() + border.size());
+  out << node, border;
+  return out;
+}
+
 SquareRootPrior to_prior(const NodeInformation& information, const state::NodeState& at,
                          const state::SlowVector& slow) {
   return {at, slow, information.S, information.r};

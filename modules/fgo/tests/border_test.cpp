@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "foucault/fgo/batch.h"
 #include "foucault/fgo/window_navigator.h"
 #include "slow_drive.h"
@@ -101,6 +103,65 @@ TEST_F(Border, AllRoutesEndThere) {
     run(recorder);
     compare(recorder.smoothed().back().epoch(), 0.02);
   }
+}
+
+/// A drive in parts, if there are passes.
+class Parts : public Border {
+ protected:
+  std::deque<measurement::SmoothedEpoch> smoothed(const std::shared_ptr<BatchPasses>& passes) {
+    longest_wait_ = 0;
+    reseed(11);
+    draw_slow();
+    FgoOptions options;
+    options.max_iterations = 50;
+    constexpr auto kModel = preintegration::PreintegrationModel::refined;
+    BatchRecorder recorder(
+        std::make_unique<WindowNavigator>(window_of(10), kModel, test_noise(), layout()), options,
+        kModel, test_noise(), layout(), passes);
+    recorder.start(initial(1));
+    std::deque<measurement::SmoothedEpoch> nodes;
+    const auto take = [&](std::deque<measurement::SmoothedEpoch> more) {
+      longest_wait_ = std::max(longest_wait_, recorder.size() - nodes.size());
+      nodes.insert(nodes.end(), more.begin(), more.end());
+    };
+    drive(recorder, 300, 140, 150, [&] { take(recorder.settled()); });
+    take(recorder.smoothed());
+    return nodes;
+  }
+
+  /// Of states and sigmas, in sigmas of the whole.
+  static double largest_difference(const std::deque<measurement::SmoothedEpoch>& parts,
+                                   const std::deque<measurement::SmoothedEpoch>& whole) {
+    EXPECT_EQ(parts.size(), whole.size());
+    double largest = 0;
+    for (std::size_t k = 0; k < whole.size(); ++k) {
+      const state::Epoch a = parts.at(k).epoch();
+      const state::Epoch b = whole[k].epoch();
+      EXPECT_EQ(a.t_ns, b.t_ns);
+      const state::StateVector sigma = b.covariance.diagonal().cwiseSqrt();
+      const state::StateVector change = a.covariance.diagonal().cwiseSqrt() - sigma;
+      for (const state::StateVector& d : {state::boxminus(a, b), change})
+        largest = std::max(largest, d.cwiseQuotient(sigma).cwiseAbs().maxCoeff());
+    }
+    return largest;
+  }
+
+  std::size_t longest_wait_ = 0;
+};
+
+TEST_F(Parts, OfTwoPassesAreTheWhole) {
+  const auto whole = smoothed(nullptr);
+  const auto passes = std::make_shared<BatchPasses>();
+  passes->most_nodes = 120;
+  const auto first = smoothed(passes);
+  EXPECT_FALSE(passes->is_final());
+  *passes = {passes->most_nodes, passes->found, {}, false};
+  const auto second = smoothed(passes);
+  EXPECT_GT(passes->found.size(), 2u);
+  EXPECT_TRUE(passes->is_final());
+  EXPECT_LE(longest_wait_, 121u);
+  EXPECT_LT(largest_difference(second, whole), 0.01);
+  EXPECT_GT(largest_difference(first, whole), 0.1) << "it did not know the end";
 }
 
 /// What is estimated beside a node outlives a restart if the Epoch has it, and loosening.

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+
 #include "foucault/geodesy/place.h"
 #include "foucault/measurement/observation.h"
 #include "noisy_drive.h"
@@ -73,17 +75,20 @@ class SlowDrive : public NoisyDrive {
   }
 
   /// Fixes and ranges every second but in [outage_begin, outage_end).
-  void drive(measurement::Navigator& navigator, int seconds, int outage_begin, int outage_end) {
+  void drive(
+      measurement::Navigator& navigator, int seconds, int outage_begin, int outage_end,
+      const std::function<void()>& each = [] {}) {
     constexpr int64_t kStep = 10'000'000;
     for (int second = 1; second <= seconds; ++second) {
       for (int64_t t = (second - 1) * 1'000'000'000LL; t < second * 1'000'000'000LL; t += kStep)
         navigator.propagate(scaled_increment(t, t + kStep));
       if (second >= outage_begin && second < outage_end) {
         navigator.hold();
-        continue;
+      } else {
+        navigator.update(measurement::gnss_position(fix_at(second, 0.02)));
+        navigator.update(range_at(second));
       }
-      navigator.update(measurement::gnss_position(fix_at(second, 0.02)));
-      navigator.update(range_at(second));
+      each();
     }
   }
 

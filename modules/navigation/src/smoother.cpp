@@ -2,6 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
 #include "foucault/core/error.h"
 #include "foucault/core/hermite.h"
 #include "foucault/core/profile.h"
@@ -68,11 +72,13 @@ state::Epoch between(const measurement::SmoothedEpoch& begin, const measurement:
 }
 
 void Smoother::Keeper::epoch(const state::Epoch& epoch) {
+  if (forward_ != nullptr) forward_->forward_epoch(epoch);
   if (rate_ == EpochRate::imu && !recording_.at_node()) {
     kept_.emplace_back(BetweenEpoch{recording_.size() - 1, epoch});
   } else {
     kept_.emplace_back(NodeEpoch{recording_.mark()});
   }
+  give_out_settled();
 }
 
 void Smoother::Keeper::fix(const state::FixResult& result) {
@@ -85,21 +91,60 @@ void Smoother::Keeper::fix(const state::FixResult& result) {
 
 void Smoother::Keeper::notice(const state::Notice& notice) { kept_.emplace_back(notice); }
 
+const measurement::SmoothedEpoch* Smoother::Keeper::node_at(std::size_t node) const {
+  return node - nodes_gone_ < nodes_.size() ? &nodes_[node - nodes_gone_] : nullptr;
+}
+
+bool Smoother::Keeper::give(const Kept& kept) {
+  const auto at_node = [&](std::size_t index, const auto& give) {
+    const measurement::SmoothedEpoch* node = node_at(index);
+    if (node != nullptr) give(*node);
+    return node != nullptr;
+  };
+  const auto freely = [](const auto& give) {
+    give();
+    return true;
+  };
+  return std::visit(
+      Overloaded{
+          [&](const NodeEpoch& e) {
+            return at_node(e.node, [&](const auto& n) { sink_.epoch(n.epoch()); });
+          },
+          [&](const BetweenEpoch& e) {
+            return at_node(e.node + 1, [&](const auto& next) {
+              sink_.epoch(between(*node_at(e.node), next, e.forward));
+            });
+          },
+          [&](const NodeFix& f) {
+            return at_node(f.node,
+                           [&](const auto& n) { sink_.fix(with_postfit(f.result, n.state)); });
+          },
+          [&](const state::FixResult& f) { return freely([&] { sink_.fix(f); }); },
+          [&](const state::ObservationResult& o) { return freely([&] { sink_.observation(o); }); },
+          [&](const state::Notice& n) { return freely([&] { sink_.notice(n); }); }},
+      kept);
+}
+
+/// The last node may be the begin of epochs that follow it.
+void Smoother::Keeper::give_out(std::deque<measurement::SmoothedEpoch> nodes) {
+  throw_if_unsound(nodes);
+  std::move(nodes.begin(), nodes.end(), std::back_inserter(nodes_));
+  for (; !kept_.empty() && give(kept_.front()); kept_.pop_front()) {
+  }
+  for (; nodes_.size() > 1; ++nodes_gone_) nodes_.pop_front();
+}
+
+void Smoother::Keeper::give_out_settled() {
+  std::deque<measurement::SmoothedEpoch> settled = recording_.settled();
+  if (settled.empty()) return;
+  const StageTimer timer(Stage::smooth);
+  give_out(std::move(settled));
+}
+
 void Smoother::Keeper::give_out() {
   recording_.mark();  // so that every epoch has a node after it
   const StageTimer timer(Stage::smooth);
-  const std::deque<measurement::SmoothedEpoch> nodes = recording_.smoothed();
-  throw_if_unsound(nodes);
-  const auto give =
-      Overloaded{[&](const NodeEpoch& e) { sink_.epoch(nodes[e.node].epoch()); },
-                 [&](const BetweenEpoch& e) {
-                   sink_.epoch(between(nodes[e.node], nodes[e.node + 1], e.forward));
-                 },
-                 [&](const NodeFix& f) { sink_.fix(with_postfit(f.result, nodes[f.node].state)); },
-                 [&](const state::FixResult& f) { sink_.fix(f); },
-                 [&](const state::ObservationResult& o) { sink_.observation(o); },
-                 [&](const state::Notice& n) { sink_.notice(n); }};
-  for (const auto& kept : kept_) std::visit(give, kept);
+  give_out(recording_.smoothed());
   for (const state::Notice& warning : warnings_) sink_.warning(warning);
 }
 

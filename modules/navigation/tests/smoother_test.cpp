@@ -54,39 +54,50 @@ class FakeRecorder : public testing::FakeNavigator, public measurement::Recordin
   }
   bool at_node() const override { return !stamps_.empty() && stamps_.back() == epoch().t_ns; }
   std::size_t size() const override { return stamps_.size(); }
-  std::deque<SmoothedEpoch> smoothed() override {
+  std::deque<SmoothedEpoch> settled() override {
+    return in_parts && !stamps_.empty() ? nodes_before(stamps_.size() - 1)
+                                        : std::deque<SmoothedEpoch>();
+  }
+  std::deque<SmoothedEpoch> smoothed() override { return nodes_before(stamps_.size()); }
+
+  double variance = 1;
+  bool in_parts = false;
+
+ private:
+  std::deque<SmoothedEpoch> nodes_before(std::size_t end) {
     std::deque<SmoothedEpoch> nodes;
-    for (const int64_t t_ns : stamps_) {
+    for (; given_out_ < end; ++given_out_) {
       nodes.push_back(node(0, variance));
-      nodes.back().state.t_ns = t_ns;
+      nodes.back().state.t_ns = stamps_[given_out_];
       nodes.back().state.position = testing::LocalFrame(kPlace).to_geodetic(Vector3d(10, 0, 0));
     }
     return nodes;
   }
 
-  double variance = 1;
-
- private:
+  std::size_t given_out_ = 0;
   std::vector<int64_t> stamps_;
 };
 
 class SmootherTest : public ::testing::Test {
  protected:
-  void run(double variance) {
+  void run(double variance, bool in_parts = false) { run(variance, in_parts, sink_); }
+
+  void run(double variance, bool in_parts, state::Sink& sink) {
     alignment::AlignmentOptions options;
     options.mode = "given";
     options.roll_deg = options.pitch_deg = options.heading_deg = 0;
     auto recorder = std::make_unique<FakeRecorder>(log_);
     recorder->variance = variance;
+    recorder->in_parts = in_parts;
     const std::unique_ptr<state::Estimator> smoother =
         make_smoother(std::move(recorder),
                       alignment::Aligner(options, imu::imu_preset("ADIS16465"), state::Mounting{}),
-                      NavigationRunOptions{}, sink_);
+                      NavigationRunOptions{}, sink);
     smoother->process(increment_between(0, 10));
     smoother->process(fix_at(10));
     smoother->process(fix_at(50));
     for (int t = 10; t < 100; t += 10) smoother->process(increment_between(t, t + 10));
-    EXPECT_TRUE(sink_.epochs_ms.empty()) << "nothing before the end";
+    EXPECT_EQ(sink_.epochs_ms.empty(), !in_parts) << "before the end";
     smoother->finish();
   }
 
@@ -100,6 +111,29 @@ TEST_F(SmootherTest, GivesEverythingOutAtTheEndWithPostfitsOfTheSmoothedSolution
   ASSERT_EQ(sink_.fixes.size(), 1u);
   EXPECT_NEAR(sink_.fixes[0].innovation_n.x(), 0, 1e-9);
   EXPECT_NEAR(sink_.fixes[0].postfit_n.x(), -10, 1e-6);
+}
+
+TEST_F(SmootherTest, GivesPartsOutWhenTheyAreSettled) {
+  run(1, true);
+  EXPECT_THAT(sink_.epochs_ms, ::testing::ElementsAre(10, 50));
+  ASSERT_EQ(sink_.fixes.size(), 1u);
+  EXPECT_NEAR(sink_.fixes[0].postfit_n.x(), -10, 1e-6);
+}
+
+/// Of the forward run a sink that asks for it is told at once.
+TEST_F(SmootherTest, TellsTheForwardRunAsItGoes) {
+  class Told : public state::ForwardSink {
+   public:
+    void epoch(const state::Epoch& epoch) override { smoothed.push_back(epoch.t_ns); }
+    void forward_epoch(const state::Epoch& epoch) override {
+      EXPECT_TRUE(smoothed.empty()) << "before everything that is smoothed";
+      forward.push_back(epoch.t_ns);
+    }
+    std::vector<int64_t> smoothed, forward;
+  } told;
+  run(1, false, told);
+  EXPECT_EQ(told.forward, told.smoothed);
+  EXPECT_EQ(told.forward.size(), 2u);
 }
 
 TEST_F(SmootherTest, ASolutionThatIsNoNumberIsAnErrorAndNoRow) {

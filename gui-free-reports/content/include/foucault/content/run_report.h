@@ -8,6 +8,7 @@
 #include "foucault/page/report_page.h"
 #include "foucault/state/interfaces.h"
 #include "foucault/state/result.h"
+#include "foucault/state/separation.h"
 #include "foucault/state/told_blocks.h"
 
 namespace foucault::content {
@@ -34,9 +35,9 @@ struct AidSummary {
 };
 
 /// Collects a run in bounded memory and writes its report: ground track, timeline of faults,
-/// errors where there is a reference, consistency, GNSS innovations, aids and calibration where
-/// there are any, position, velocity, attitude, uncertainty, biases, data health.
-/// Calls come in order of stamps within each kind; kinds may interleave in any way.
+/// errors where there is a reference, smoothed against forward, consistency, GNSS innovations, aids
+/// and calibration where there are any, position, velocity, attitude, uncertainty, biases, data
+/// health. Calls come in order of stamps within each kind; kinds may interleave in any way.
 class RunReport : public state::Sink {
  public:
   /// `told`: of the blocks that are estimated.
@@ -52,6 +53,9 @@ class RunReport : public state::Sink {
   void notice(const state::Notice& notice) override;
   /// `epoch` is the one the error belongs to; its covariance gives the bounds.
   void reference_error(const state::Epoch& epoch, const state::ReferenceError& error);
+
+  /// Of a smoother: what it made of its forward run.
+  void separation(const state::Separation& separation);
 
   /// Drawn over time if there is a consistency().
   void normalized_square(const NormalizedSquare& square);

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "foucault/evaluation/run_metrics.h"
+#include "foucault/evaluation/separation.h"
 
 namespace foucault::exports {
 
@@ -11,5 +12,8 @@ namespace foucault::exports {
 nlohmann::ordered_json run_metrics_json(
     const evaluation::RunMetrics& metrics,
     const std::vector<evaluation::CalibratedBlock>& calibration);
+
+/// Root mean squares of smoothed less forward.
+nlohmann::ordered_json separation_json(const evaluation::SeparationMetrics& separation);
 
 }  // namespace foucault::exports

@@ -57,6 +57,25 @@ struct Elimination : Conditional {
 /// Throws std::runtime_error if the eliminated node is not determined.
 Elimination eliminate(const NodeInformation& first, const IntervalRows& interval);
 
+/// How a node depends on a later one and the border: it is F (later, border) + e, with the
+/// covariance Q of e.
+struct Dependence {
+  state::NodeByState F;
+  state::NodeMatrix Q = state::NodeMatrix::Zero();
+};
+
+/// Of a node on itself.
+Dependence on_itself(Eigen::Index slow);
+
+/// Of the node before, which was eliminated, if `node` is the dependence of the next.
+Dependence of_node_before(const Conditional& before, const Dependence& node);
+
+/// Covariance of the node and the border, from that of the later one and the border.
+state::StateMatrix covariance(const Dependence& node, const state::StateMatrix& later);
+
+/// Tangents of a node and the border.
+state::StateVector joined(const state::NodeVector& node, const state::SlowVector& border);
+
 /// At the linearization point (at, slow).
 SquareRootPrior to_prior(const NodeInformation& information, const state::NodeState& at,
                          const state::SlowVector& slow);

@@ -29,7 +29,11 @@ class Recording {
   virtual bool at_node() const = 0;
   virtual std::size_t size() const = 0;
 
-  /// One a node, in order. Called once, at the end.
+  /// The next nodes, in order, that need not wait for the end; a recording that is smoothed as a
+  /// whole has none. May be called after everything above.
+  virtual std::deque<SmoothedEpoch> settled() { return {}; }
+
+  /// One a node, in order, those that were settled left out. Called once, at the end.
   virtual std::deque<SmoothedEpoch> smoothed() = 0;
 };
 

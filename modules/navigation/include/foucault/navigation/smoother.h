@@ -7,7 +7,7 @@
 
 #include "foucault/measurement/recording.h"
 #include "foucault/navigation/navigation_run.h"
-#include "foucault/state/interfaces.h"
+#include "foucault/state/forward_sink.h"
 
 /// Smoothing: a forward run that leaves nodes, and afterwards every epoch from all fixes.
 namespace foucault::navigation {
@@ -19,7 +19,8 @@ namespace foucault::navigation {
 state::Epoch between(const measurement::SmoothedEpoch& begin, const measurement::SmoothedEpoch& end,
                      const state::NavState& forward);
 
-/// Runs a recording navigator forward and gives out everything at finish(), epochs from all fixes.
+/// Runs a recording navigator forward, of which a ForwardSink is told the epochs, and gives out
+/// epochs from all fixes: everything at finish(), of a recording in parts some before.
 /// Innovations of fixes are those of the forward run, postfits those of the smoothed solution. With
 /// EpochRate::imu the epochs between nodes are interpolated, see between(); memory then grows by
 /// 200 bytes an epoch, else by what a node takes. finish() throws DataError if a node's solution is
@@ -38,7 +39,10 @@ class Smoother : public state::Estimator {
   class Keeper : public state::Sink {
    public:
     Keeper(measurement::Recording& recording, EpochRate rate, state::Sink& sink)
-        : recording_(recording), rate_(rate), sink_(sink) {}
+        : recording_(recording),
+          rate_(rate),
+          sink_(sink),
+          forward_(dynamic_cast<state::ForwardSink*>(&sink)) {}
     void epoch(const state::Epoch& epoch) override;
     void fix(const state::FixResult& result) override;
     void observation(const state::ObservationResult& result) override {
@@ -54,6 +58,8 @@ class Smoother : public state::Estimator {
     void give_out();
 
    private:
+    void give_out_settled();
+    void give_out(std::deque<measurement::SmoothedEpoch> nodes);
     struct NodeEpoch {
       std::size_t node;
     };
@@ -69,9 +75,18 @@ class Smoother : public state::Estimator {
     measurement::Recording& recording_;
     EpochRate rate_;
     state::Sink& sink_;
-    std::deque<std::variant<NodeEpoch, BetweenEpoch, NodeFix, state::FixResult,
-                            state::ObservationResult, state::Notice>>
-        kept_;
+    state::ForwardSink* forward_;  ///< the same, if it is one
+    using Kept = std::variant<NodeEpoch, BetweenEpoch, NodeFix, state::FixResult,
+                              state::ObservationResult, state::Notice>;
+
+    /// Gives it out if its nodes are there.
+    bool give(const Kept& kept);
+    /// Null if it is not there yet.
+    const measurement::SmoothedEpoch* node_at(std::size_t node) const;
+
+    std::deque<Kept> kept_;
+    std::deque<measurement::SmoothedEpoch> nodes_;  ///< smoothed; a few before what is kept
+    std::size_t nodes_gone_ = 0;                    ///< before them
     std::vector<state::Notice> warnings_;
   };
 

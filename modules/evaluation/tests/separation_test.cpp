@@ -1,0 +1,81 @@
+#include "foucault/evaluation/separation.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "foucault/core/so3.h"
+#include "foucault/core/time.h"
+
+namespace foucault::evaluation {
+namespace {
+
+/// At t [s], north of the equator, with these variances of position.
+state::Epoch epoch_at(double t, double north_m, double heading, double variance) {
+  state::Epoch epoch;
+  epoch.t_ns = nanoseconds(t);
+  epoch.position = {north_m / 6335439.327, 0, 0};  // WGS-84's meridian radius at the equator
+  epoch.velocity_n = {north_m, 0, 0};
+  epoch.q_n_b = so3::from_euler({0, 0, heading});
+  epoch.covariance.diagonal().head<9>().setConstant(variance);
+  return epoch;
+}
+
+struct Separations {
+  std::vector<state::Separation> told;
+  SeparationCollector collector{state::Mounting(),
+                                [this](const state::Separation& s) { told.push_back(s); }};
+};
+
+TEST(Separation, IsSmoothedLessForwardWithWhatSmoothingMayChange) {
+  Separations s;
+  s.collector.forward(epoch_at(1, 5, 3.1, 25));
+  s.collector.smoothed(epoch_at(1, 2, -3.1, 16));
+  ASSERT_EQ(s.told.size(), 1u);
+  EXPECT_NEAR(s.told[0].position_n.x(), -3, 1e-6);
+  EXPECT_NEAR(s.told[0].velocity_n.x(), -3, 1e-12);
+  EXPECT_NEAR(s.told[0].euler.z(), 2 * M_PI - 6.2, 1e-12) << "the shorter way round";
+  EXPECT_NEAR(s.told[0].position_sigma.x(), 3, 1e-12);
+  EXPECT_NEAR(s.told[0].euler_sigma.z(), 3, 1e-9);
+}
+
+TEST(Separation, IsOfTheSameStamp) {
+  Separations s;
+  for (const double t : {1.0, 2.0, 3.0}) s.collector.forward(epoch_at(t, t, 0, 4));
+  for (const double t : {0.5, 2.0, 2.5}) s.collector.smoothed(epoch_at(t, 0, 0, 1));
+  ASSERT_EQ(s.told.size(), 1u);
+  EXPECT_EQ(s.told[0].t_ns, nanoseconds(2));
+  EXPECT_NEAR(s.told[0].position_n.x(), -2, 1e-6);
+}
+
+TEST(Separation, KeepsAtMostTwentyEpochsASecond) {
+  Separations s;
+  for (int i = 0; i <= 200; ++i) s.collector.forward(epoch_at(i * 0.005, 0, 0, 4));
+  for (int i = 0; i <= 200; ++i) s.collector.smoothed(epoch_at(i * 0.005, 0, 0, 1));
+  EXPECT_EQ(s.told.size(), 21u);
+}
+
+TEST(Separation, RootMeanSquaresAreFromTheStartOfTheStatisticsOn) {
+  Separations s;
+  s.collector.statistics_from(nanoseconds(2));
+  const double north[] = {100, 3, 4};
+  for (int i = 0; i < 3; ++i) s.collector.forward(epoch_at(i + 1, north[i], 0, 4));
+  for (int i = 0; i < 3; ++i) s.collector.smoothed(epoch_at(i + 1, 0, 0, 1));
+  const SeparationMetrics metrics = s.collector.metrics();
+  EXPECT_EQ(metrics.samples, 2);
+  EXPECT_NEAR(metrics.position_rms_n.x(), std::sqrt(12.5), 1e-6);
+  EXPECT_NEAR(metrics.velocity_rms_n.x(), std::sqrt(12.5), 1e-12);
+  EXPECT_EQ(metrics.position_rms_n.y(), 0);
+}
+
+TEST(Separation, SigmasThatGrewLeaveNone) {
+  Separations s;
+  s.collector.forward(epoch_at(1, 0, 0, 4));
+  s.collector.smoothed(epoch_at(1, 0, 0, 4.1));
+  ASSERT_EQ(s.told.size(), 1u);
+  EXPECT_EQ(s.told[0].position_sigma, Eigen::Vector3d::Zero());
+}
+
+}  // namespace
+}  // namespace foucault::evaluation
