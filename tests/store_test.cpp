@@ -179,12 +179,17 @@ TEST_F(Store, ADamagedRecordIsNamedAndComputedAgain) {
   expect_as_whole("damaged", "evaluate");
 }
 
+/// One with other bytes, in itself or in the part that reads logs.
 TEST_F(Store, TwoVersionsOfTheProgramDoNotMix) {
   in("versions", evaluate());
-  const Outcome other = in("versions", "cp \"$0\" other && echo >> other && ./other " +
-                                           evaluate().substr(std::string("\"$0\" ").size()));
-  EXPECT_EQ(other.exit_code, 0) << other.err;
-  EXPECT_THAT(other.out, testing::Not(HasSubstr("found in"))) << "all was computed";
+  for (const char* changed : {"other", "foucault_mrpt.so"}) {
+    const Outcome other =
+        in("versions", "cp \"$0\" other && cp \"$(dirname \"$0\")\"/foucault_*.so . && echo >> " +
+                           std::string(changed) + " && ./other " +
+                           evaluate().substr(std::string("\"$0\" ").size()));
+    EXPECT_EQ(other.exit_code, 0) << other.err;
+    EXPECT_THAT(other.out, testing::Not(HasSubstr("found in"))) << "all was computed";
+  }
 }
 
 /// A log that changes under its name, and one that has moved.

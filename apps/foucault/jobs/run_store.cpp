@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "foucault/core/error.h"
+#include "foucault/core/loaded_part.h"
 #include "foucault/store/file_hash.h"
 #include "interrupt.h"
 #include "version.h"
@@ -42,9 +43,11 @@ evaluation::Executor::Options computing(evaluation::Executor::Options options) {
   return options;
 }
 
-/// The number of a version stays while a program is worked on; its bytes do not.
+/// The number of a version stays while a program is worked on; its bytes do not, nor those of what
+/// reads logs for it.
 std::string program_version() {
-  return fmt::format("{} {}", kVersion, store::hex(store::hash_file("/proc/self/exe")));
+  return fmt::format("{} {} {}", kVersion, store::hex(store::hash_file("/proc/self/exe")),
+                     store::hex(store::hash_file(part_file("foucault_mrpt"))));
 }
 
 }  // namespace

@@ -9,15 +9,18 @@
 
 namespace foucault {
 
-void* load_part(const std::string& library, const char* entry) {
+std::filesystem::path part_file(const std::string& library) {
   namespace fs = std::filesystem;
   std::error_code error;
   const fs::path folder = fs::read_symlink("/proc/self/exe", error).parent_path();
   const std::string name = library + ".so";
   const fs::path beside = folder / name;
   const fs::path installed = folder.parent_path() / "lib" / "foucault" / name;
-  const fs::path& file = fs::exists(beside, error) ? beside : installed;
-  void* const part = dlopen(file.c_str(), RTLD_LAZY | RTLD_LOCAL);
+  return fs::exists(beside, error) ? beside : installed;
+}
+
+void* load_part(const std::string& library, const char* entry) {
+  void* const part = dlopen(part_file(library).c_str(), RTLD_LAZY | RTLD_LOCAL);
   void* const found = part == nullptr ? nullptr : dlsym(part, entry);
   if (found != nullptr) return found;
   throw DataError(fmt::format(
