@@ -67,7 +67,8 @@ class Store : public testing::Test {
     folder_->write("grid.yaml",
                    "base:\n"
                    "  outages: {first_s: 60, length_s: 10, period_s: 20, shifts_s: [0]}\n"
-                   "  calibrate: {noise: off}\n"
+                   "  aids: {mode: none}\n"
+                   "  calibrate: {mode: none}\n"
                    "grid:\n"
                    "  imu.arw_deg_sqrt_h: {from: 0.02, to: 2, steps: 9, scale: log}\n"
                    "  imu.gyro_bias_deg_h: {from: 1, to: 100, steps: 9, scale: log}\n"
