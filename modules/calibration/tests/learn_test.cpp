@@ -9,11 +9,10 @@
 namespace foucault::calibration {
 namespace {
 
-Learned learned(const Trip& trip, const imu::ImuNoise& told) {
+Learned learned(const Trip& trip, const imu::ImuNoise& told, LearnOptions options = {}) {
   NoiseModel model;
   model.imu = told;
   const std::vector<RecordedWay> ways{trip.way()};
-  LearnOptions options;
   options.axes = axes_of(ways).all();
   return learn(ways, model, options);
 }
@@ -104,37 +103,29 @@ TEST(Learn, ErrorsOfFixesThatLastAreNoNoiseOfTheImu) {
   trip.scenario.gnss_white_sigma = 0.05;
   trip.scenario.gnss_coloured_sigma = 1;
   trip.scenario.gnss_coloured_tau_s = 12;
-  const std::vector<RecordedWay> ways{trip.way()};
-  NoiseModel told;
-  told.imu = trip.told;
   LearnOptions options;
-  options.axes = axes_of(ways).all();
   options.starts = 20;
-  const Learned white = learn(ways, told, options);
+  const Learned white = learned(trip, trip.told, options);
   EXPECT_LT(white.noise.fix_white, 0.8);
   EXPECT_GT(by_truth(white, trip.noise, noise_axis::accel_white), 10);
 
   options.lasting = true;
-  const Learned found = learn(ways, told, options);
+  const Learned found = learned(trip, trip.told, options);
   ASSERT_TRUE(found.lasting);
   EXPECT_NEAR(found.lasting->sigmas, 1, 0.3);
   EXPECT_GT(found.lasting->tau_s, 6);
   EXPECT_LT(found.lasting->tau_s, 24);
   EXPECT_LT(by_truth(found, trip.noise, noise_axis::accel_white), 3);
   EXPECT_GT(found.noise.fix_white, 1.5 * white.noise.fix_white);
-  EXPECT_EQ(found.axes.size(), options.axes.size());
+  EXPECT_EQ(found.axes.size(), white.axes.size());
 }
 
 TEST(Learn, WhiteErrorsDoNotLast) {
   Trip trip;
   trip.scenario.seed = 4;
-  const std::vector<RecordedWay> ways{trip.way()};
-  NoiseModel told;
-  told.imu = trip.told;
   LearnOptions options;
-  options.axes = axes_of(ways).all();
   options.lasting = true;
-  EXPECT_FALSE(learn(ways, told, options).lasting);
+  EXPECT_FALSE(learned(trip, trip.told, options).lasting);
 }
 
 /// Two minutes do not show how far a bias wanders in an hour.
