@@ -56,4 +56,5 @@ struct MrptPart {
 }  // namespace foucault::rawlog
 
 /// Where it begins; null in a program that has yet to load it.
-extern "C" [[gnu::weak, gnu::visibility("default")]] const foucault::rawlog::MrptPart* foucault_mrpt_part();
+extern "C" [[gnu::weak, gnu::visibility("default")]] const foucault::rawlog::MrptPart*
+foucault_mrpt_part();
