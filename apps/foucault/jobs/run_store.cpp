@@ -43,11 +43,12 @@ evaluation::Executor::Options computing(evaluation::Executor::Options options) {
   return options;
 }
 
-/// The number of a version stays while a program is worked on; its bytes do not, nor those of what
-/// reads logs for it.
+/// The number of a version stays while a program is worked on; its bytes do not, nor those of the
+/// part that reads logs for it (a program linked to the readers has no such part).
 std::string program_version() {
+  const fs::path readers = part_file("foucault_mrpt");
   return fmt::format("{} {} {}", kVersion, store::hex(store::hash_file("/proc/self/exe")),
-                     store::hex(store::hash_file(part_file("foucault_mrpt"))));
+                     fs::exists(readers) ? store::hex(store::hash_file(readers)) : "");
 }
 
 }  // namespace
