@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <fstream>
 
+#include "foucault/core/time.h"
 #include "foucault/ekf/ekf.h"
 #include "foucault/imu/increments.h"
 #include "foucault/navigation/navigation_run.h"
@@ -35,9 +36,7 @@ int main(int argc, char** argv) {
   Row row, fixed;
   for (gnss_file >> fixed; imu_file >> row;) {
     for (; gnss_file && fixed[0] <= row[0]; gnss_file >> fixed) {
-      GnssFix fix;
-      fix.t_ns = nanoseconds(fixed[0]);
-      fix.antenna = {fixed[1] * kDegree, fixed[2] * kDegree, fixed[3]};
+      GnssFix fix{nanoseconds(fixed[0]), {fixed[1] * kDegree, fixed[2] * kDegree, fixed[3]}};
       fix.position_covariance = fixed.tail<3>().cwiseAbs2().asDiagonal();
       fix.p_b_a = {0.1, -0.3, -0.8};  // the lever arm, IMU to antenna [m]
       run.process(fix);

@@ -4,6 +4,7 @@
 
 #include <cstdio>
 
+#include "foucault/core/time.h"
 #include "foucault/geodesy/local_frame.h"
 #include "foucault/measurement/predicted.h"
 #include "foucault/methods/methods.h"

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <iterator>
+#include <utility>
 
 #include "foucault/core/time.h"
 
@@ -30,9 +31,7 @@ std::optional<int64_t> StopQueue::next(int64_t now_ns, int64_t end_ns) const {
 
 std::optional<StopEvent> StopQueue::take_due(int64_t now_ns) {
   if (pending_.empty() || pending_.begin()->first > now_ns) return std::nullopt;
-  const StopEvent event = pending_.begin()->second;
-  pending_.erase(pending_.begin());
-  return event;
+  return std::move(pending_.extract(pending_.begin()).mapped());
 }
 
 /// A fix expected about when the hold is due is waited for: stamps that jitter must not make pairs
