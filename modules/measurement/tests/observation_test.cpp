@@ -150,7 +150,7 @@ const std::vector<Kind> kKinds = {
     {"predicted",
      [](const auto& x, auto& rng) {
        const ObservationPtr sound = random_beacon(x, rng);
-       return predicted("beacon_range", 0, 0.1, [sound](const state::NavState& at) {
+       return predicted("predicted", 0, 0.1, [sound](const state::NavState& at) {
          return -sound->linearize(at, {}, {}).r[0];
        });
      }},
