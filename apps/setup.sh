@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Installs the Debian packages Foucault is built from; those already there are left alone.
-#   apps/setup.sh           what the program needs
-#   apps/setup.sh --tests   what its tests need as well
+#   apps/setup.sh              what the program needs
+#   apps/setup.sh --tests      what its tests need as well
+#   apps/setup.sh --packages   what making Debian packages of it needs as well
 set -euo pipefail
 
 build_packages=(
@@ -16,9 +17,11 @@ build_packages=(
 )
 test_packages=(
   libgtest-dev libgmock-dev libgeographiclib-dev
+  doxygen          # pages of the public headers
   chromium python3 # reports as readers see them
   parallel openmpi-bin slurmctld slurmd slurm-client munge # engines that start workers
 )
+package_packages=(dpkg-dev file)
 
 fail() {
   echo "setup: $*" >&2
@@ -63,8 +66,9 @@ install_packages() {
 packages=("${build_packages[@]}")
 case "${1:-}" in
   --tests) packages+=("${test_packages[@]}") ;;
+  --packages) packages+=("${package_packages[@]}") ;;
   "") ;;
-  *) fail "unknown argument '$1' (use: apps/setup.sh [--tests])" ;;
+  *) fail "unknown argument '$1' (use: apps/setup.sh [--tests | --packages])" ;;
 esac
 
 command -v dpkg-query >/dev/null && command -v apt-get >/dev/null ||

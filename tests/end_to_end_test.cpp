@@ -203,6 +203,23 @@ TEST_F(Trip, ASmootherTellsItsForwardRun) {
   }
 }
 
+/// 150 fixes in parts of 106: what the first pass said, the second does not say again.
+TEST_F(Trip, SmoothedInPartsItSaysEverythingOnce) {
+  for (const std::string memory : {"1", "2000"}) {
+    const Outcome run =
+        foucault({"run", log_, "--set", "calibrate.mode=none", "--set", "batch.memory_mb=" + memory,
+                  "--no-report", "--out", folder_ / memory});
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_EQ(run.out.find("a second pass") != std::string::npos, memory == "1") << run.out;
+    const std::size_t start = run.out.find("start      ");
+    ASSERT_NE(start, std::string::npos);
+    EXPECT_EQ(run.out.find("start      ", start + 1), std::string::npos) << run.out;
+    EXPECT_EQ(run.err, "");
+  }
+  const double whole = metrics("2000")["reference"]["horizontal_rmse_m"];
+  EXPECT_NEAR(metrics("1")["reference"]["horizontal_rmse_m"], whole, 0.01 * whole);
+}
+
 TEST_F(Trip, TheWrittenConfigurationGivesTheSameRunAgain) {
   ASSERT_EQ(foucault({"run", log_, "--set", "fgo.window_s=7", "--set", "imu.preset=ICM20602",
                       "--no-report", "--out", folder_ / "a"})

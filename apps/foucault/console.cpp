@@ -49,6 +49,10 @@ void Console::say(const std::vector<std::string>& lines) {
   for (const std::string& line : lines) say(line);
 }
 
+void Console::say_once(const std::string& line) {
+  if (said_once_.insert(line).second) say(line);
+}
+
 void Console::warn(const std::string& text) {
   if (!warned_.insert(text).second) return;
   clear_progress();

@@ -20,6 +20,8 @@ class Console {
   /// A line of the result.
   void say(const std::string& line);
   void say(const std::vector<std::string>& lines);
+  /// Once for each line: of what is gone through twice.
+  void say_once(const std::string& line);
 
   /// A text of whole lines.
   void print(const std::string& text);
@@ -48,7 +50,7 @@ class Console {
   std::string stage_;
   Clock::time_point stage_begin_;
   Clock::time_point last_draw_;
-  std::set<std::string> warned_;
+  std::set<std::string> warned_, said_once_;
 };
 
 /// `foucault: error: <text>` on stderr, newlines in it flattened.

@@ -56,6 +56,14 @@ std::vector<std::string> command_names(const CLI::App& app) {
   return names;
 }
 
+/// Of those known, if one is near: two letters are easily exchanged, half of a word is another.
+std::string meant(const std::string& word, const std::vector<std::string>& known) {
+  const std::string nearest = nearest_text(word, known);
+  const std::size_t farthest = std::max<std::size_t>(2, word.size() / 2);
+  if (nearest.empty() || edit_distance(word, nearest) > farthest) return "";
+  return fmt::format("; did you mean {}?", nearest);
+}
+
 }  // namespace
 
 Program::Program() : app_("Foucault: post-processing of GNSS/IMU recordings", "foucault") {
@@ -111,8 +119,8 @@ void Program::check_command(const std::string& name) const {
   if (name.empty() || name.front() == '-') return;
   const std::vector<std::string> known = command_names(app_);
   if (std::find(known.begin(), known.end(), name) != known.end()) return;
-  throw UsageError(fmt::format("unknown command '{}'; did you mean {}? Known: {}", name,
-                               nearest_text(name, known), fmt::join(known, ", ")));
+  throw UsageError(fmt::format("unknown command '{}'{}; known: {}", name, meant(name, known),
+                               fmt::join(known, ", ")));
 }
 
 std::string Program::help_of(const std::vector<std::string>& words) const {
@@ -120,10 +128,8 @@ std::string Program::help_of(const std::vector<std::string>& words) const {
   for (const std::string& word : words) {
     const std::vector<std::string> known = command_names(*app);
     if (std::find(known.begin(), known.end(), word) == known.end()) {
-      throw UsageError(
-          fmt::format("'{}' has no command '{}'; {}", full_name(*app), word,
-                      known.empty() ? fmt::format("see '{} --help'", full_name(*app))
-                                    : fmt::format("did you mean {}?", nearest_text(word, known))));
+      throw UsageError(fmt::format("'{}' has no command '{}'{}; see '{} --help'", full_name(*app),
+                                   word, meant(word, known), full_name(*app)));
     }
     app = app->get_subcommand(word);
   }
@@ -135,8 +141,7 @@ std::string Program::what_is_wrong(const CLI::ParseError& error) const {
   for (const std::string& word : app_.remaining(true)) {
     if (word.size() < 2 || word.front() != '-') continue;
     const std::string name = word.substr(0, word.find('='));
-    return fmt::format("unknown option '{}'; did you mean {}?", name,
-                       nearest_text(name, option_names(deepest())));
+    return fmt::format("unknown option '{}'{}", name, meant(name, option_names(deepest())));
   }
   const std::string text = error.what();
   for (const CLI::Option* option : deepest().get_options()) {  // by its place, if it has one

@@ -27,6 +27,7 @@ const std::map<std::string, Names> kArrows = {
     {"alignment", {"core", "geodesy", "state", "imu", "measurement", "ekf"}},
     {"diagnosis", {"core", "geodesy", "state", "imu", "measurement"}},
     {"navigation", {"core", "geodesy", "state", "imu", "measurement", "alignment", "diagnosis"}},
+    {"methods", {"core", "state", "measurement", "preintegration", "ekf", "fgo", "navigation"}},
     {"simulation", {"core", "geodesy", "state", "imu"}},
     {"store", {"core"}},
     {"evaluation", {"core", "geodesy", "state", "measurement", "store"}},

@@ -66,7 +66,8 @@ Found drive(const std::string& method, int64_t seed, double late) {
   settings.calibrate.lever_arm_sigma_m = 0.05;
   simulation::SimulatedSource source(city(seed), settings.imu.noise());
   LastEpoch sink;
-  const auto estimator = find_method(method).make(settings, source.mounting(), sink);
+  const auto estimator =
+      methods::find(method).make(method_options(settings, source.mounting()), sink);
   for (const Measurement& measurement : recording(source, late)) estimator->process(measurement);
   estimator->finish();
   const state::Layout layout = settings.calibrate.layout();
@@ -145,7 +146,8 @@ double offset_among_lasting_errors(const std::string& method, int64_t seed) {
   scenario.gnss_noise = false;
   simulation::SimulatedSource source(scenario, settings.imu.noise());
   LastEpoch sink;
-  const auto estimator = find_method(method).make(settings, source.mounting(), sink);
+  const auto estimator =
+      methods::find(method).make(method_options(settings, source.mounting()), sink);
   LastingError error(seed);
   while (std::optional<Measurement> measurement = source.next()) {
     if (auto* fix = std::get_if<GnssFix>(&*measurement)) error.add_to(*fix);

@@ -84,7 +84,7 @@ int left_out(const simulation::ScenarioOptions& scenario,
       std::make_unique<simulation::SimulatedSource>(scenario, imu::imu_preset("ADIS16465")), faults,
       1);
   const std::unique_ptr<state::Estimator> estimator =
-      find_method("ekf").make(settings, source.mounting(), count);
+      methods::find("ekf").make(method_options(settings, source.mounting()), count);
   while (const std::optional<Measurement> m = source.next()) estimator->process(*m);
   estimator->finish();
   return count.fixes;

@@ -69,7 +69,7 @@ evaluation::RunMetrics run(std::unique_ptr<state::Source> source, const std::str
                            const Settings& settings = Settings::of_paper()) {
   evaluation::RunMetricsCollector collector(source->mounting());
   const std::unique_ptr<state::Estimator> estimator =
-      find_method(method).make(settings, source->mounting(), collector);
+      methods::find(method).make(method_options(settings, source->mounting()), collector);
   while (const std::optional<Measurement> measurement = source->next()) {
     estimator->process(*measurement);
   }

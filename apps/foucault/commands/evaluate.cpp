@@ -97,7 +97,7 @@ std::function<void(Call&)> declare_evaluate(CLI::App& app) {
   app.add_flag("--paper", o->paper,
                "The paper's comparison: ekf, refined and rough with 15 states and position fixes "
                "alone (aids.mode and calibrate.mode none)");
-  app.add_option("--methods", o->methods, fmt::format("Of {}", method_names()))
+  app.add_option("--methods", o->methods, fmt::format("Of {}", methods::names()))
       ->delimiter(',')
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)

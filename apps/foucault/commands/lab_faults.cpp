@@ -35,7 +35,7 @@ std::vector<FaultTask> fault_tasks(const FaultStudyOptions& options) {
     for (const laboratory::FaultCase& fault : laboratory::fault_cases())
       names.push_back(fault.name);
   }
-  for (const std::string& method : options.methods) find_method(method);
+  for (const std::string& method : options.methods) methods::find(method);
   std::vector<FaultTask> tasks;
   for (const std::string& name : names) {
     laboratory::find_fault_case(name);

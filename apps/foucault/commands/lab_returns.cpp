@@ -40,7 +40,7 @@ ReturnStudyOptions completed(ReturnStudyOptions options, const Settings& setting
 }
 
 std::vector<laboratory::ReturnCase> return_cases(const ReturnStudyOptions& options) {
-  for (const std::string& method : options.methods) find_method(method);
+  for (const std::string& method : options.methods) methods::find(method);
   std::vector<laboratory::ReturnCase> cases;
   for (const std::string& log : options.logs) {
     for (const double noise : options.noise) {
@@ -85,7 +85,7 @@ Study declare_return_study(CLI::App& lab) {
       "returns",
       "Whether true fixes are believed after outages, whatever the noise model: against no gate");
   returns->fallthrough();
-  for (const Method& method : methods()) o->methods.push_back(method.name);
+  for (const methods::Method& method : methods::all()) o->methods.push_back(method.name);
   add_input_option(*returns, "LOG", o->logs,
                    "Rawlogs, with the outages of the configuration; default: a "
                    "simulated trip");

@@ -15,7 +15,7 @@ namespace {
 
 std::string method_help() {
   std::string help = "Method:";
-  for (const Method& method : methods()) {
+  for (const methods::Method& method : methods::all()) {
     help += fmt::format("\n  {}: {}", method.name, method.summary);
   }
   return help;

@@ -122,14 +122,14 @@ bool is_least_shift(const evaluation::OutageOptions& outages,
 }
 
 std::string label_of(const EvaluationCase& c) {
-  return c.label.empty() ? find_method(c.method).name : c.label;
+  return c.label.empty() ? methods::find(c.method).name : c.label;
 }
 
 }  // namespace
 
 evaluation::ExperimentRun experiment_run(const EvaluationCase& c, double shift_s,
                                          const std::shared_ptr<SharedLogs>& logs) {
-  const Method& method = find_method(c.method);
+  const methods::Method& method = methods::find(c.method);
   c.settings->imu.noise();
   evaluation::ExperimentRun run;
   run.recording = c.recording;
@@ -146,7 +146,8 @@ evaluation::ExperimentRun experiment_run(const EvaluationCase& c, double shift_s
   run.make_estimator = [make = method.make, settings = c.settings, name = c.recording](
                            const state::Mounting& mounting, state::Sink& sink) {
     return naming_recording(name, [&] {
-      return std::make_unique<NamedEstimator>(name, make(*settings, mounting, sink));
+      return std::make_unique<NamedEstimator>(name,
+                                              make(method_options(*settings, mounting), sink));
     });
   };
   run.options.reference.keep_s = method.keep_references_s;

@@ -19,7 +19,7 @@ struct EvaluationCase {
   std::string log;                           ///< rawlog
   std::string recording;                     ///< its name in tables
   std::string imu;                           ///< recordings of one IMU are joined in tables
-  std::string method;                        ///< see methods.h
+  std::string method;                        ///< see methods::all()
   std::string label;                         ///< of the method in tables; empty: its name
   std::shared_ptr<const Settings> settings;  ///< one for many cases, which may be a million
 };

@@ -27,7 +27,7 @@ std::optional<std::string> process(const std::string& log, const std::string& me
   rawlog::RawlogSource source(log, settings.imu.sample_kind(), settings.rawlog);
   observer.place(source.mounting());
   const std::unique_ptr<state::Estimator> estimator =
-      find_method(method).make(settings, source.mounting(), observer);
+      methods::find(method).make(method_options(settings, source.mounting()), observer);
   while (const std::optional<Measurement> measurement = source.next()) {
     if (const auto* reference = std::get_if<ReferencePose>(&*measurement)) {
       observer.reference(*reference);
@@ -69,10 +69,10 @@ laboratory::ReturnOutcome study_return(const laboratory::ReturnCase& what,
     Settings configured = settings;
     configured.imu = settings.imu.scaled(of_case.noise);
     if (!gate) configured.gnss.gate_false_alarm = 0;
-    const Method& method = find_method(of_case.method);
+    const methods::Method& method = methods::find(of_case.method);
     const auto make = [make = method.make, configured](const state::Mounting& mounting,
                                                        state::Sink& sink) {
-      return make(configured, mounting, sink);
+      return make(method_options(configured, mounting), sink);
     };
     return laboratory::ReturnMethod{make, method.keep_references_s};
   };
@@ -88,7 +88,7 @@ laboratory::StartOutcome study_start(int64_t seed, const Settings& settings) {
     Settings configured = settings;
     configured.imu.preset = imu;
     configured.aids.gnss_velocity = "on";
-    return find_method("ekf").make(configured, mounting, sink);
+    return methods::find("ekf").make(method_options(configured, mounting), sink);
   };
   return laboratory::study_start(seed, program);
 }

@@ -100,13 +100,13 @@ struct RunPass {
           const std::filesystem::path& folder, Console& console)
       : source(job.log, settings.imu.sample_kind(), settings.rawlog),
         known(told(settings, source)) {
-    const Method& method = find_method(job.method);
+    const methods::Method& method = methods::find(job.method);
     const state::Mounting mounting = source.mounting().with(known.layout);
     if (job.report) report.emplace(labels(job, config), mounting, known);
     output.emplace(folder, mounting, settings.output, method.keep_references_s,
                    report ? &*report : nullptr, console);
     const std::unique_ptr<state::Estimator> estimator =
-        method.make(settings, source.mounting(), *output);
+        method.make(method_options(settings, source.mounting()), *output);
     process(job.log, source, *estimator, method.per_sample, *output, console);
   }
 
@@ -175,7 +175,7 @@ RunResult run_into(const RunJob& job, const std::filesystem::path& folder, Conso
 }
 
 RunResult run(const RunJob& job, Console& console) {
-  find_method(job.method);
+  methods::find(job.method);
   job.settings.imu.noise();
   OutputDirectory out(job.out);
   for (const char* name : {"report", "reference.tum"}) out.withdraw(name);

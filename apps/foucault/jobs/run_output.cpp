@@ -119,7 +119,7 @@ void RunOutput::notice(const state::Notice& notice) {
   facts_.notice(notice);
   if (report_ != nullptr) report_->notice(notice);
   if (notice.kind == state::NoticeKind::aligned) {
-    console_.say(fmt::format("start      {}, {}", utc_text(notice.t_ns), notice.text));
+    console_.say_once(fmt::format("start      {}, {}", utc_text(notice.t_ns), notice.text));
   } else {
     console_.warn(fmt::format("{}: {}", utc_text(notice.t_ns), notice.text));
   }

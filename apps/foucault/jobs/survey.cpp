@@ -49,13 +49,13 @@ std::optional<Watcher> look_through(const std::string& log, const Settings& sett
     rawlog::RawlogSource source(log, settings.imu.sample_kind(), settings.rawlog);
     watcher.told = {settings.calibrate.layout(), settings.calibrate.time_offset_s,
                     source.lever_arm(), source.mounting().q_v_b};
-    const std::unique_ptr<state::Estimator> estimator =
-        drive(filter_of(settings, leaves_way, watcher.way), settings, source.mounting(), watcher);
+    navigation::NavigationRun run(filter_of(settings, leaves_way, watcher.way),
+                                  method_options(settings, source.mounting()).run, watcher);
     while (const std::optional<Measurement> measurement = source.next()) {
-      estimator->process(*measurement);
+      run.process(*measurement);
       console.progress("looking through", source.progress());
     }
-    estimator->finish();
+    run.finish();
   } catch (const DataError&) {
     return std::nullopt;
   }

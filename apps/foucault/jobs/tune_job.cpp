@@ -25,7 +25,7 @@ tuning::Tunable tunable(Settings& base) {
     set_config(assignment, settings);
     settings.imu.noise();
   };
-  return {base, try_on, [](const std::string& method) { find_method(method); }, method_names()};
+  return {base, try_on, [](const std::string& method) { methods::find(method); }, methods::names()};
 }
 
 std::string base_text(const TuneJob& job) {

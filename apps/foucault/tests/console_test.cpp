@@ -24,10 +24,12 @@ TEST(Console, ResultsAndWarnings) {
     console.warn("over\ntwo lines\n");  // once is enough
     console.progress("reading", 0.5);
     console.progress_of("reading")(1);
+    console.say_once("four");
+    console.say_once("four");
     Console(true).say("unheard");
   }
   print_error("wrong");
-  EXPECT_EQ(testing::internal::GetCapturedStdout(), "one\ntwo\nthree\n");
+  EXPECT_EQ(testing::internal::GetCapturedStdout(), "one\ntwo\nthree\nfour\n");
   EXPECT_THAT(testing::internal::GetCapturedStderr(),
               HasSubstr("foucault: warning: over two lines\nfoucault: error: wrong\n"));
 }

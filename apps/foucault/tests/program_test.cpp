@@ -15,6 +15,7 @@ namespace {
 
 using ::testing::HasSubstr;
 using ::testing::IsSupersetOf;
+using ::testing::Not;
 
 CommandEntry tree() { return Program().tree(); }
 
@@ -225,6 +226,8 @@ TEST(Options, MissingOnesAreNamedAsTheyAreTyped) {
 TEST(Commands, MistypedOnesAreNamedWithTheNearest) {
   EXPECT_THAT(complaint({"rnu"}), HasSubstr("unknown command 'rnu'; did you mean run?"));
   EXPECT_THAT(complaint({"help", "import", "cvs"}), HasSubstr("did you mean csv?"));
+  EXPECT_THAT(complaint({"help", "nothing"}), Not(HasSubstr("did you mean")));
+  EXPECT_THAT(complaint({"--outt", "trip"}), Not(HasSubstr("did you mean")));
 }
 
 TEST(Commands, HelpIsThatOfTheCommand) {

@@ -50,16 +50,16 @@ TEST(Settings, SimulationReadsBackToo) {
 }
 
 TEST(Methods, AllOfThemCanBeMade) {
-  const Settings settings;
+  const methods::MethodOptions options = method_options(Settings(), {});
   state::Sink sink;
-  for (const Method& method : methods()) {
-    EXPECT_NE(method.make(settings, {}, sink), nullptr) << method.name;
+  for (const methods::Method& method : methods::all()) {
+    EXPECT_NE(method.make(options, sink), nullptr) << method.name;
   }
 }
 
 TEST(Methods, AnUnknownOneIsToldTheKnownOnes) {
   try {
-    find_method("kalman");
+    methods::find("kalman");
     FAIL();
   } catch (const UsageError& error) {
     EXPECT_NE(std::string(error.what()).find("refined"), std::string::npos) << error.what();

@@ -50,10 +50,14 @@ void FixJudge::doubt_state(int64_t t_ns) {
   gate_open_until_ns_ = std::max(gate_open_until_ns_, t_ns + kGateOpenNs);
 }
 
+/// Two more dimensions than k make it larger by (x/2)^(k/2) exp(-x/2) / Gamma(k/2 + 1).
 double chi_square_tail(double square, int dimension) {
-  if (dimension == 2) return std::exp(-square / 2);
-  const double one = std::erfc(std::sqrt(square / 2));
-  return dimension == 1 ? one : one + std::sqrt(2 * square / kPi) * std::exp(-square / 2);
+  const double half = square / 2;
+  const bool even = dimension % 2 == 0;
+  double tail = even ? std::exp(-half) : std::erfc(std::sqrt(half));
+  for (double k = even ? 2 : 1; k < dimension; k += 2)
+    tail += std::pow(half, k / 2) * std::exp(-half) / std::tgamma(k / 2 + 1);
+  return tail;
 }
 
 double FixJudge::level() const {

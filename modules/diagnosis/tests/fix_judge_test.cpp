@@ -31,6 +31,13 @@ TEST(FixJudge, GatesByTheChiSquareTestOfTheDimension) {
   }
 }
 
+/// The same of a measurement of up to six rows.
+TEST(ChiSquareTail, IsThatOfTheTables) {
+  const double quantiles[] = {6.635, 9.210, 11.345, 13.277, 15.086, 16.812};
+  for (int dimension = 1; dimension <= 6; ++dimension)
+    EXPECT_NEAR(chi_square_tail(quantiles[dimension - 1], dimension), 0.01, 3e-6) << dimension;
+}
+
 TEST(FixJudge, MahalanobisIsTheSquareBySigmas) {
   const Eigen::Matrix3d S = Vector3d(1, 4, 9).asDiagonal();
   EXPECT_DOUBLE_EQ(mahalanobis_squared(Vector3d(2, 2, 3), S), 6);

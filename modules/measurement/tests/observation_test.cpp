@@ -18,6 +18,7 @@
 #include "foucault/measurement/gnss_position.h"
 #include "foucault/measurement/gnss_velocity.h"
 #include "foucault/measurement/nonholonomic.h"
+#include "foucault/measurement/predicted.h"
 #include "foucault/measurement/wheel_speed.h"
 #include "foucault/measurement/zero_rate.h"
 #include "foucault/measurement/zero_velocity.h"
@@ -122,30 +123,6 @@ BodyStretch random_stretch(const state::NavState& x, std::mt19937& rng) {
 
 Eigen::Quaterniond random_mounting(std::mt19937& rng) { return so3::exp(3 * draw3(rng)); }
 
-/// All there is. A new observation is one line here; EveryObservationHasALine asks for it.
-struct Kind {
-  std::string name;
-  std::function<ObservationPtr(const state::NavState&, std::mt19937&)> make;
-};
-const std::vector<Kind> kKinds = {
-    {"gnss_position", [](const auto& x, auto& rng) { return gnss_position(random_fix(x, rng)); }},
-    {"gnss_velocity", [](const auto& x, auto& rng) { return gnss_velocity(random_fix(x, rng)); }},
-    {"beacon_range", random_beacon},
-    {"nonholonomic",
-     [](const auto& x, auto& rng) {
-       return std::make_shared<Nonholonomic>(random_stretch(x, rng), random_mounting(rng),
-                                             Eigen::Vector2d(0.1, 0.2));
-     }},
-    {"wheel_speed",
-     [](const auto& x, auto& rng) {
-       return std::make_shared<WheelSpeedMean>(random_stretch(x, rng), random_mounting(rng), 20,
-                                               0.02);
-     }},
-    {"zero_velocity", [](const auto&, auto&) { return std::make_shared<ZeroVelocity>(0.02); }},
-    {"zero_rate",
-     [](const auto&, auto& rng) { return std::make_shared<ZeroRate>(draw3(rng), 1e-4); }},
-};
-
 /// Every slow block there is; a new one is one line here.
 state::Layout every_block() {
   state::Layout layout;
@@ -160,6 +137,37 @@ state::Layout every_block() {
       .add(state::block::wheel_scale, 0.05);
   return layout;
 }
+
+/// All there is. A new observation is one line here; EveryObservationHasALine asks for it.
+struct Kind {
+  std::string name;
+  std::function<ObservationPtr(const state::NavState&, std::mt19937&)> make;
+};
+const std::vector<Kind> kKinds = {
+    {"gnss_position", [](const auto& x, auto& rng) { return gnss_position(random_fix(x, rng)); }},
+    {"gnss_velocity", [](const auto& x, auto& rng) { return gnss_velocity(random_fix(x, rng)); }},
+    {"beacon_range", random_beacon},
+    {"predicted",
+     [](const auto& x, auto& rng) {
+       const ObservationPtr sound = random_beacon(x, rng);
+       return predicted("predicted", 0, 0.1, [sound](const state::NavState& at) {
+         return -sound->linearize(at, {}, {}).r[0];
+       });
+     }},
+    {"nonholonomic",
+     [](const auto& x, auto& rng) {
+       return std::make_shared<Nonholonomic>(random_stretch(x, rng), random_mounting(rng),
+                                             Eigen::Vector2d(0.1, 0.2));
+     }},
+    {"wheel_speed",
+     [](const auto& x, auto& rng) {
+       return std::make_shared<WheelSpeedMean>(random_stretch(x, rng), random_mounting(rng), 20,
+                                               0.02);
+     }},
+    {"zero_velocity", [](const auto&, auto&) { return std::make_shared<ZeroVelocity>(0.02); }},
+    {"zero_rate",
+     [](const auto&, auto& rng) { return std::make_shared<ZeroRate>(draw3(rng), 1e-4); }},
+};
 
 /// Latitudes to +-80 deg, velocities to 250 m/s, any attitude, scale factors of several per cent.
 state::NavState random_state(std::mt19937& rng, const state::Layout& layout) {

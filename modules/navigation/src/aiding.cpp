@@ -188,13 +188,14 @@ void Aiding::use_wheels(int64_t t_ns, const measurement::BodyStretch& stretch,
   }
 }
 
-void Aiding::use(int64_t t_ns, const measurement::ObservationPtr& observation,
+bool Aiding::use(int64_t t_ns, const measurement::ObservationPtr& observation,
                  measurement::Navigator& navigator) {
   const state::Innovation innovation = navigator.innovation(*observation);
   const bool believed = agreement(innovation) >= options_.gnss.gate_false_alarm;
   if (believed) navigator.update(observation);
   sink_.observation({t_ns, observation->name(), static_cast<int>(innovation.value.size()),
                      diagnosis::mahalanobis_squared(innovation), believed});
+  return believed;
 }
 
 }  // namespace foucault::navigation

@@ -36,6 +36,9 @@ class Aiding {
   void propagate(const ImuIncrement& increment, bool made_up);
 
   bool is_due(int64_t t_ns) const;
+  /// Uses an observation if it passes its test, and tells the sink. Gives whether it did.
+  bool use(int64_t t_ns, const measurement::ObservationPtr& observation,
+           measurement::Navigator& navigator);
   /// Uses what there is. held: fixes hold the state.
   void stop(int64_t t_ns, bool held, measurement::Navigator& navigator);
 
@@ -63,8 +66,6 @@ class Aiding {
                   measurement::Navigator& navigator);
   std::optional<Eigen::Vector2d> slip_sigma() const;
   std::optional<double> wheel_sigma() const;
-  void use(int64_t t_ns, const measurement::ObservationPtr& observation,
-           measurement::Navigator& navigator);
 
   NavigationRunOptions options_;
   state::Sink& sink_;

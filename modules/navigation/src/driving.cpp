@@ -111,6 +111,11 @@ void Driving::take_event(const StopEvent& event) {
   }
 }
 
+void Driving::observe(const Observed& observed) {
+  if (observed.t_ns <= time_ns_) return notice_late(observed);
+  stops_.add(observed);
+}
+
 std::optional<HoleMet> Driving::take_increment(const ImuIncrement& increment) {
   if (increment.t_end_ns <= time_ns_) return std::nullopt;  // before the start
   ImuIncrement rest = increment;
@@ -159,10 +164,12 @@ bool Driving::is_held() const {
   return fix_ns && seconds_between(*fix_ns, time_ns_) < kHeld;
 }
 
-/// Everything due now: fixes first, then a hold if still needed, then aids, then one epoch.
+/// Everything due now: what was measured first, then a hold if still needed, then aids, then one
+/// epoch.
 void Driving::stop() {
   while (const std::optional<StopEvent> event = stops_.take_due(time_ns_)) {
     if (const auto* fix = std::get_if<GnssFix>(&*event)) meet_fix(*fix);
+    if (const auto* observed = std::get_if<Observed>(&*event)) meet(*observed);
     if (in_doubt_) return;
   }
   if (stops_.hold_is_due(time_ns_)) {
@@ -261,6 +268,17 @@ void Driving::predict_ahead(const GnssFix& fix) {
 void Driving::fix_used() {
   stops_.fix_used(time_ns_);
   gate_.used(time_ns_);
+}
+
+void Driving::meet(const Observed& observed) {
+  if (aiding_.use(observed.t_ns, observed.observation, *navigator_)) stops_.held(time_ns_);
+}
+
+void Driving::notice_late(const Observed& observed) {
+  if (std::exchange(noticed_late_, true)) return;
+  sink_.notice({observed.t_ns, state::NoticeKind::skipped,
+                fmt::format("{} at {} came after later measurements; such are left out",
+                            observed.observation->name(), utc_text(observed.t_ns))});
 }
 
 void Driving::notice_bad_sigma(const GnssFix& fix) {

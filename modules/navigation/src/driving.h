@@ -46,6 +46,8 @@ class Driving {
   void start(const state::Epoch& initial);
   /// In order. Whatever interrupts comes back with all that has not been driven.
   Interruption take(const Measurement& measurement);
+  /// Is used once the drive has come to its stamp.
+  void observe(const Observed& observed);
   /// Goes on from a fix that was in doubt.
   Interruption resume(const GnssFix& doubted, const diagnosis::DoubtOutcome& outcome);
   /// The run ends here, for a new alignment: what waits, which is forgotten.
@@ -81,9 +83,11 @@ class Driving {
                               state::FixResult& result);
   void use(const GnssFix& fix, state::FixResult& result);
   void use_velocity(const GnssFix& fix);
+  void meet(const Observed& observed);
   void predict_ahead(const GnssFix& fix);
   void fix_used();
   void notice_bad_sigma(const GnssFix& fix);
+  void notice_late(const Observed& observed);
 
   void emit_epoch();
   [[noreturn]] void throw_unsound(const std::string& part) const;
@@ -103,6 +107,7 @@ class Driving {
   std::optional<int64_t> last_epoch_ns_;
   int64_t late_ = 0;
   bool noticed_bad_sigma_ = false;
+  bool noticed_late_ = false;
 };
 
 }  // namespace foucault::navigation

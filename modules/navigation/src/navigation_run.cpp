@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <stdexcept>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -19,7 +20,15 @@ namespace foucault::navigation {
 
 using state::NoticeKind;
 
+alignment::Aligner aligner_of(const NavigationRunOptions& options) {
+  return {options.alignment, options.imu, options.mounting, options.layout};
+}
+
 NavigationRun::~NavigationRun() = default;
+
+NavigationRun::NavigationRun(std::unique_ptr<measurement::Navigator> navigator,
+                             const NavigationRunOptions& options, state::Sink& sink)
+    : NavigationRun(std::move(navigator), aligner_of(options), options, sink) {}
 
 NavigationRun::NavigationRun(std::unique_ptr<measurement::Navigator> navigator,
                              alignment::Aligner aligner, const NavigationRunOptions& options,
@@ -42,6 +51,12 @@ void NavigationRun::process(const Measurement& measurement) {
     driving_->leave_out(std::get<GnssFix>(measurement), *admitted.left_out);
   }
   if (admitted.measurement) go_through(*admitted.measurement);
+}
+
+/// Waits where the drive has not come to yet, whatever the phase.
+void NavigationRun::observe(int64_t t_ns, const measurement::ObservationPtr& observation) {
+  if (!observation) throw std::invalid_argument("no observation");
+  driving_->observe({t_ns, observation});
 }
 
 void NavigationRun::go_through(const Measurement& measurement) {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <iterator>
+#include <utility>
 
 #include "foucault/core/time.h"
 
@@ -12,6 +14,11 @@ int64_t stamp(const StopEvent& event) {
 }
 
 StopQueue::StopQueue(double node_interval) : node_interval_ns_(nanoseconds(node_interval)) {}
+
+void StopQueue::start(int64_t t_ns) {
+  last_node_ns_ = t_ns;
+  pending_.erase(pending_.begin(), pending_.lower_bound(t_ns));
+}
 
 void StopQueue::add(const StopEvent& event) { pending_.emplace(stamp(event), event); }
 
@@ -24,9 +31,7 @@ std::optional<int64_t> StopQueue::next(int64_t now_ns, int64_t end_ns) const {
 
 std::optional<StopEvent> StopQueue::take_due(int64_t now_ns) {
   if (pending_.empty() || pending_.begin()->first > now_ns) return std::nullopt;
-  const StopEvent event = pending_.begin()->second;
-  pending_.erase(pending_.begin());
-  return event;
+  return std::move(pending_.extract(pending_.begin()).mapped());
 }
 
 /// A fix expected about when the hold is due is waited for: stamps that jitter must not make pairs
@@ -57,10 +62,13 @@ std::vector<GnssFix> StopQueue::pending_fixes() const {
 
 std::vector<Measurement> StopQueue::clear() {
   std::vector<Measurement> events;
-  for (const auto& [t_ns, event] : pending_) {
-    events.push_back(std::visit([](const auto& e) { return Measurement(e); }, event));
+  for (auto pending = pending_.begin(); pending != pending_.end();) {
+    const StopEvent& event = pending->second;
+    const bool stays = std::holds_alternative<Observed>(event);
+    if (const auto* fix = std::get_if<GnssFix>(&event)) events.emplace_back(*fix);
+    if (const auto* request = std::get_if<EpochRequest>(&event)) events.emplace_back(*request);
+    pending = stays ? std::next(pending) : pending_.erase(pending);
   }
-  pending_.clear();
   last_fix_ns_.reset();
   fix_interval_ns_ = 0;
   return events;

@@ -7,21 +7,28 @@
 #include <vector>
 
 #include "foucault/core/measurement.h"
+#include "foucault/measurement/observation.h"
 
 namespace foucault::navigation {
 
-/// What a run stops for between increments.
-using StopEvent = std::variant<GnssFix, EpochRequest>;
+/// A measurement of one's own, see Run.
+struct Observed {
+  int64_t t_ns = 0;
+  measurement::ObservationPtr observation;
+};
 
-/// When to stop: at fixes and requests that are known, and for a hold wherever node_interval has
-/// passed since the last node (fix that was used, hold, or start).
+/// What a run stops for between increments.
+using StopEvent = std::variant<GnssFix, EpochRequest, Observed>;
+
+/// When to stop: at fixes, requests and what else was measured, as far as they are known, and for a
+/// hold wherever node_interval has passed since the last node (what was used, hold, or start).
 class StopQueue {
  public:
   /// node_interval [s]
   explicit StopQueue(double node_interval);
 
-  /// A run starts at this stamp; what is pending stays.
-  void start(int64_t t_ns) { last_node_ns_ = t_ns; }
+  /// A run starts at this stamp; what is pending from there on stays.
+  void start(int64_t t_ns);
   void add(const StopEvent& event);
 
   /// The next stop up to end_ns, later than now.
@@ -37,7 +44,8 @@ class StopQueue {
   double fix_interval() const;  ///< between the last two that were used [s]; 0: not known
   std::vector<GnssFix> pending_fixes() const;
 
-  /// Everything that is pending, in order of stamps; what is known of fixes is forgotten.
+  /// Measurements that are pending, in order of stamps, taken out; what is known of fixes is
+  /// forgotten.
   std::vector<Measurement> clear();
 
  private:

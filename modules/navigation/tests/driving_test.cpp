@@ -120,6 +120,70 @@ TEST_F(DrivingTest, RatesBeforeAHoleLeaveOutWhatWasMadeUp) {
   EXPECT_NEAR(driving().take_recent_rates(increment_between(30, 40)).gyro_b.x(), 0.1, 1e-12);
 }
 
+/// A height that nobody has thought of.
+struct Height final : measurement::Observation {
+  explicit Height(double residual) : r(residual) {}
+  std::string_view name() const override { return "height"; }
+  state::Linearized linearize(const state::NavState&, const measurement::MeanMotion&,
+                              const state::Layout& layout) const override {
+    state::Linearized z(1, layout.size());
+    z.r[0] = r;
+    z.H(0, 2) = z.R(0, 0) = 1;
+    return z;
+  }
+  double r;  ///< sigma 1
+};
+
+Observed height_at(double ms, double residual) {
+  return {at(ms), std::make_shared<Height>(residual)};
+}
+
+TEST_F(DrivingTest, WhatElseWasMeasuredIsUsedAtItsStampIfItAgrees) {
+  driving().observe(height_at(5, 2));
+  driving().observe(height_at(7, 20));
+  take(increment_between(0, 10));
+  EXPECT_THAT(log_.calls, ElementsAre("start@0", "update@5"));
+  EXPECT_THAT(sink_.epochs_ms, ElementsAre(0, 5, 7));
+  ASSERT_EQ(sink_.observations.size(), 2u);
+  EXPECT_EQ(sink_.observations[0].name, "height");
+  EXPECT_EQ(sink_.observations[0].normalized_square, 4);
+  EXPECT_TRUE(sink_.observations[0].used);
+  EXPECT_FALSE(sink_.observations[1].used);
+}
+
+/// A node stands where it was used; the next hold comes a second after it.
+TEST_F(DrivingTest, WhatElseWasMeasuredIsANode) {
+  driving().observe(height_at(600, 0));
+  take(increment_between(0, 1700));
+  EXPECT_THAT(log_.calls, ElementsAre("start@0", "update@600", "hold@1600"));
+}
+
+TEST_F(DrivingTest, WhatElseWasMeasuredWaitsBehindAFixInDoubt) {
+  settle();
+  const std::size_t updates = log_.updates.size();
+  const GnssFix fix = fix_at(12500, Vector3d(100, 0, 0));
+  take(fix);
+  driving().observe(height_at(12500, 0));
+  ASSERT_TRUE(std::holds_alternative<FixInDoubt>(take(increment_between(12000, 13000))));
+  EXPECT_EQ(log_.updates.size(), updates);
+  diagnosis::DoubtOutcome outcome;
+  outcome.fixes.emplace_back();
+  outcome.fixes.back().action = diagnosis::FixDecision::Action::leave_out;
+  outcome.fixes.back().fix = fix;
+  driving().resume(fix, outcome);
+  EXPECT_EQ(log_.updates.size(), updates + 1);
+  EXPECT_EQ(sink_.observations.back().name, "height");
+}
+
+TEST_F(DrivingTest, WhatElseWasMeasuredTooEarlyIsNamedOnce) {
+  take(increment_between(0, 100));
+  driving().observe(height_at(50, 0));
+  driving().observe(height_at(60, 0));
+  ASSERT_EQ(sink_.notices.size(), 1u);
+  EXPECT_EQ(sink_.notices[0].text,
+            "height at 2023-11-14T22:13:20.050Z came after later measurements; such are left out");
+}
+
 TEST_F(DrivingTest, LateFixesAreLeftOutAndCounted) {
   take(increment_between(0, 100));
   take(fix_at(50));

@@ -85,6 +85,44 @@ TEST_F(NavigationRunTest, SplitsIncrementsAtFixesAndRequests) {
   EXPECT_THAT(sink_.epochs_ms, ElementsAre(10, 23, 26));
 }
 
+/// A position of one's own, right where the fake navigator stands.
+measurement::ObservationPtr own() {
+  struct Own final : measurement::Observation {
+    std::string_view name() const override { return "own"; }
+    state::Linearized linearize(const state::NavState&, const measurement::MeanMotion&,
+                                const state::Layout& layout) const override {
+      state::Linearized z(1, layout.size());
+      z.r[0] = 0;
+      z.R(0, 0) = 1;
+      return z;
+    }
+  };
+  return std::make_shared<Own>();
+}
+
+/// What comes while the run aligns waits for the drive; what is of before the start is gone.
+TEST_F(NavigationRunTest, AMeasurementOfOnesOwnIsUsedAtItsStampWhateverThePhase) {
+  feed_imu(0, 10);
+  run().observe(at(5), own());
+  run().observe(at(15), own());
+  run().process(fix_at(10));
+  run().observe(at(17), own());
+  feed_imu(10, 30);
+  EXPECT_THAT(log_.calls, ElementsAre("start@10", "update@15", "update@17"));
+  EXPECT_THROW(run().observe(at(40), nullptr), std::invalid_argument);
+}
+
+/// A hole that ends the alignment does not end what waits behind it.
+TEST_F(NavigationRunTest, AMeasurementOfOnesOwnOutlivesANewAlignment) {
+  align();
+  run().observe(at(60'020), own());
+  feed_imu(10, 20);
+  feed_imu(60'000, 60'010);
+  run().process(fix_at(60'010));
+  feed_imu(60'010, 60'030);
+  EXPECT_THAT(log_.calls, ElementsAre("start@60010", "update@60020"));
+}
+
 class UnsoundState : public NavigationRunTest,
                      public ::testing::WithParamInterface<
                          std::pair<const char*, std::function<void(state::Epoch&)>>> {};

@@ -5,7 +5,7 @@
 
 namespace foucault {
 
-/// A part of the program that is a library of its own: <library>.so in the folder of the program,
+/// A part of the program that is a library of its own: LIBRARY.so in the folder of the program,
 /// else in ../lib/foucault beside that.
 std::filesystem::path part_file(const std::string& library);
 

@@ -12,7 +12,7 @@ namespace foucault::diagnosis {
 /// e' S^-1 e.
 double mahalanobis_squared(const Eigen::Vector3d& value, const Eigen::Matrix3d& covariance);
 double mahalanobis_squared(const state::Innovation& innovation);
-/// Probability that the square of a normalized innovation of 1 to 3 dimensions is larger.
+/// Probability that the square of a normalized innovation of so many dimensions is larger.
 double chi_square_tail(double square, int dimension);
 
 /// Decides whether measurements of one kind, fixes for example, agree with the prediction: by the

@@ -24,7 +24,8 @@ class EkfOptions : public Configurable {
 /// has them.
 class EkfNavigator : public measurement::Navigator {
  public:
-  EkfNavigator(const imu::ImuNoise& imu, const state::Layout& layout, const EkfOptions& options);
+  explicit EkfNavigator(const imu::ImuNoise& imu, const state::Layout& layout = {},
+                        const EkfOptions& options = {});
 
   void start(const state::Epoch& initial) override;
   void propagate(const ImuIncrement& increment) override;

@@ -21,7 +21,8 @@ class Observation {
  public:
   virtual ~Observation() = default;
 
-  /// Of its kind: aids.<name> in the configuration and in metrics.json.
+  /// Of its kind: aids.NAME in the configuration and in metrics.json. A literal, as results keep
+  /// it after this is gone.
   virtual std::string_view name() const = 0;
 
   /// In the local NED of x: r = measured - predicted, H = d predicted / d error, by the blocks of

@@ -7,6 +7,7 @@
 
 #include "foucault/alignment/alignment.h"
 #include "foucault/measurement/navigator.h"
+#include "foucault/navigation/run.h"
 #include "foucault/navigation/run_options.h"
 #include "foucault/state/interfaces.h"
 
@@ -54,13 +55,17 @@ using Interruption = std::variant<std::monostate, HoleMet, FixInDoubt>;
 /// out. Memory is bounded: before alignment, at most what the Aligner may still start from is held.
 /// finish() throws DataError if there was no IMU, no usable fix, or no alignment, or if more than
 /// half of the increments had to be left out: why, and what to do about it.
-class NavigationRun : public state::Estimator {
+class NavigationRun : public Run {
  public:
+  NavigationRun(std::unique_ptr<measurement::Navigator> navigator,
+                const NavigationRunOptions& options, state::Sink& sink);
+  /// With an aligner of one's own.
   NavigationRun(std::unique_ptr<measurement::Navigator> navigator, alignment::Aligner aligner,
                 const NavigationRunOptions& options, state::Sink& sink);
   ~NavigationRun() override;
 
   void process(const Measurement& measurement) override;
+  void observe(int64_t t_ns, const measurement::ObservationPtr& observation) override;
   void finish() override;
 
  private:

@@ -25,13 +25,16 @@ state::Epoch between(const measurement::SmoothedEpoch& begin, const measurement:
 /// EpochRate::imu the epochs between nodes are interpolated, see between(); memory then grows by
 /// 200 bytes an epoch, else by what a node takes. finish() throws DataError if a node's solution is
 /// not finite; nothing has been given out then.
-class Smoother : public state::Estimator {
+class Smoother : public Run {
  public:
   /// `recording` is what `navigator` leaves; both live as long as this.
   Smoother(std::unique_ptr<measurement::Navigator> navigator, measurement::Recording& recording,
            alignment::Aligner aligner, const NavigationRunOptions& options, state::Sink& sink);
 
   void process(const Measurement& measurement) override { run_.process(measurement); }
+  void observe(int64_t t_ns, const measurement::ObservationPtr& observation) override {
+    run_.observe(t_ns, observation);
+  }
   void finish() override;
 
  private:
@@ -96,13 +99,16 @@ class Smoother : public state::Estimator {
 
 /// A smoother on a navigator that is itself the recording: RtsRecorder, BatchRecorder.
 template <class Recorder>
-std::unique_ptr<state::Estimator> make_smoother(std::unique_ptr<Recorder> recorder,
-                                                alignment::Aligner aligner,
-                                                const NavigationRunOptions& options,
-                                                state::Sink& sink) {
+std::unique_ptr<Run> make_smoother(std::unique_ptr<Recorder> recorder, alignment::Aligner aligner,
+                                   const NavigationRunOptions& options, state::Sink& sink) {
   measurement::Recording& recording = *recorder;
   return std::make_unique<Smoother>(std::move(recorder), recording, std::move(aligner), options,
                                     sink);
+}
+template <class Recorder>
+std::unique_ptr<Run> make_smoother(std::unique_ptr<Recorder> recorder,
+                                   const NavigationRunOptions& options, state::Sink& sink) {
+  return make_smoother(std::move(recorder), aligner_of(options), options, sink);
 }
 
 }  // namespace foucault::navigation

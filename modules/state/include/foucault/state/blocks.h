@@ -13,7 +13,7 @@ namespace foucault::state {
 
 /// Something that is estimated: a short vector with a name. Blocks of one name are the same.
 struct Block {
-  std::string_view name;  ///< as in metrics.json; calibrate.<name> in the configuration
+  std::string_view name;  ///< as in metrics.json; calibrate.NAME in the configuration
   int size = 3;
   std::string_view unit;
 };
