@@ -50,6 +50,8 @@ void Console::say(const std::vector<std::string>& lines) {
 }
 
 void Console::warn(const std::string& text) {
+  constexpr std::size_t kMostRemembered = 10'000;
+  if (warned_.size() == kMostRemembered) warned_.clear();
   if (!warned_.insert(text).second) return;
   clear_progress();
   fmt::print(stderr, "foucault: warning: {}\n", one_line(text));
