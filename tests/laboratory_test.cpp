@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "support/program.h"
 #include "support/test_folder.h"
@@ -41,6 +42,27 @@ TEST(Laboratory, WritesTableMetricsAndReport) {
   EXPECT_TRUE(fs::exists(folder / "lab/report/index.html"));
   EXPECT_TRUE(fs::exists(folder / "lab/report/lab_models_position.png"));
   EXPECT_EQ(folder.entries(), 1u);
+}
+
+/// A worker computes, the merge writes what one process would.
+TEST(Laboratory, FaultsComeFromAStore) {
+  const TestFolder folder;
+  const std::vector<std::string> study{"lab", "faults", "--fault", "ramp", "--methods", "ekf"};
+  const auto with = [&](std::vector<std::string> options) {
+    options.insert(options.begin(), study.begin(), study.end());
+    return foucault(options);
+  };
+  ASSERT_EQ(with({"--out", folder / "alone"}).exit_code, 0);
+  EXPECT_EQ(folder.entries(), 1u) << "the hidden store is gone";
+  const std::string store = folder / "store", out = folder / "out";
+  ASSERT_EQ(with({"--out", out, "--store", store, "--shard", "1/2"}).exit_code, 0);
+  EXPECT_EQ(folder.text("out/faults.csv"), "") << "workers write no results";
+  const Outcome merged = with({"--out", out, "--store", store, "--no-compute"});
+  ASSERT_EQ(merged.exit_code, 0) << merged.err;
+  EXPECT_THAT(merged.out, HasSubstr("0 runs computed, 1 found"));
+  EXPECT_EQ(folder.lines("out/faults.csv").size(), 2u);
+  EXPECT_EQ(folder.text("out/faults.csv"), folder.text("alone/faults.csv"));
+  EXPECT_EQ(folder.text("out/faults.md"), folder.text("alone/faults.md"));
 }
 
 TEST(Laboratory, RefusesWhatItDoesNotKnow) {

@@ -244,6 +244,7 @@ TEST_F(Store, AHiddenOneGoesOnceTheResultsAreWritten) {
 }
 
 /// The only worker, killed again and again: what was finished stays, and nothing is done twice.
+/// (Fifty kills: tests/benchmarks/store.sh.)
 TEST_F(Store, KilledAtRandomMomentsTheResultIsTheSame) {
   for (const char* which : {"evaluate", "tune"}) {
     const std::string name = std::string("killed-") + which;
@@ -251,7 +252,7 @@ TEST_F(Store, KilledAtRandomMomentsTheResultIsTheSame) {
     std::mt19937 rng{42};
     std::map<std::string, ino_t> before;
     int kills = 0;
-    for (; kills < 25; ++kills) {
+    for (; kills < 8; ++kills) {
       const int wait_ms = static_cast<int>(rng() % 400);
       in(name, command + " --quiet & pid=$!; sleep " + std::to_string(wait_ms / 1000.0) +
                    "; kill -KILL $pid; wait $pid");
@@ -319,6 +320,8 @@ class Slurm {
     return shell("SLURM_CONF='" + folder_ / "slurm.conf" + "' squeue --noheader").out.empty();
   }
   Outcome kill_node(const std::string& name) const { return script("kill-node", name); }
+  /// How many tasks have begun so far.
+  int started() const { return std::stoi(shell("cat '" + folder_ / "tasks/" + "'* | wc -l").out); }
 
  private:
   Outcome script(const std::string& verb, const std::string& argument) const {
@@ -343,21 +346,26 @@ TEST_F(Store, SlurmArrayWithANodeThatDies) {
   if (!has_programs("slurmctld slurmd sbatch munged")) {
     GTEST_SKIP() << "no Slurm here: packages slurmctld slurmd slurm-client munge";
   }
+  const Slurm slurm;
   for (const char* which : {"evaluate", "tune"}) {
-    const std::string name = std::string("slurm-") + which;
-    const fs::path here = *folder_ / name;
+    const fs::path here = *folder_ / (std::string("slurm-") + which);
     fs::create_directories(here);
-    const Slurm slurm;
     const std::string command =
         std::regex_replace(std::string(which) == "tune" ? tune() : evaluate(),
                            std::regex("\"\\$0\""), "\"$FOUCAULT\"");
     const Outcome submitted = slurm.submit(here, command + " --shard auto", 4);
     ASSERT_EQ(submitted.exit_code, 0) << submitted.err;
-    ASSERT_TRUE(wait_until([&] { return records_in(here / "store").size() > 10; }));
-    EXPECT_EQ(slurm.kill_node("n2").exit_code, 0);
-    EXPECT_TRUE(wait_until([&] { return slurm.is_empty(); }));
-    expect_merge_as_whole(name, which);
   }
+  const auto is_under_way = [&](const char* name) {
+    return records_in(*folder_ / name / "store").size() > 10;
+  };
+  ASSERT_TRUE(
+      wait_until([&] { return is_under_way("slurm-evaluate") && is_under_way("slurm-tune"); }));
+  EXPECT_EQ(slurm.kill_node("n2").exit_code, 0);
+  EXPECT_TRUE(wait_until([&] { return slurm.is_empty(); }));
+  EXPECT_GT(slurm.started(), 2 * 4) << "tasks of the node begin again on the other one";
+  expect_merge_as_whole("slurm-evaluate", "evaluate");
+  expect_merge_as_whole("slurm-tune", "tune");
 }
 
 }  // namespace

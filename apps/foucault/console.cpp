@@ -54,6 +54,8 @@ void Console::say_once(const std::string& line) {
 }
 
 void Console::warn(const std::string& text) {
+  constexpr std::size_t kMostRemembered = 10'000;
+  if (warned_.size() == kMostRemembered) warned_.clear();
   if (!warned_.insert(text).second) return;
   clear_progress();
   fmt::print(stderr, "foucault: warning: {}\n", one_line(text));

@@ -26,7 +26,7 @@ class Console {
   /// A text of whole lines.
   void print(const std::string& text);
 
-  /// `foucault: warning: <text>`, once for each text.
+  /// `foucault: warning: <text>`, once for each text (of ten thousand, if there are so many).
   void warn(const std::string& text);
 
   /// Part done of a stage, 0 to 1; cheap enough to call for every measurement.

@@ -12,6 +12,7 @@
 
 #include "foucault/ekf/ekf.h"
 #include "foucault/ekf/rts.h"
+#include "foucault/evaluation/outage_join.h"
 #include "foucault/evaluation/outage_run.h"
 #include "foucault/evaluation/statistics.h"
 #include "foucault/navigation/navigation_run.h"

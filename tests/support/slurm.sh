@@ -2,7 +2,8 @@
 # A Slurm of one's own on loopback, for tests: no systemd, no cgroups, as any user.
 #   slurm.sh up DIR NODES         starts it; then SLURM_CONF=DIR/slurm.conf is its configuration
 #   slurm.sh kill-node DIR NAME   as if the machine were gone: its slurmd and the pids in
-#                                 DIR/tasks/NAME, which jobs write there, get a SIGKILL
+#                                 DIR/tasks/NAME, which jobs write there, get a SIGKILL; that it is
+#                                 down Slurm is told, since it needs 25 s to find out
 #   slurm.sh down DIR             ends by pid what `up` has started
 set -euo pipefail
 
@@ -28,14 +29,15 @@ MailProg=/bin/true
 ProctrackType=proctrack/pgid
 TaskPlugin=task/none
 SelectType=select/cons_tres
-SelectTypeParameters=CR_Core
+SelectTypeParameters=CR_Core,CR_LLN
 SlurmdParameters=config_overrides
 ReturnToService=2
 SlurmdTimeout=10
 MpiDefault=none
+SchedulerParameters=sched_interval=2,bf_interval=2
 CONF
   for i in $(seq "$nodes"); do
-    echo "NodeName=n$i NodeHostname=$host NodeAddr=127.0.0.1 Port=$((port + i)) CPUs=1"
+    echo "NodeName=n$i NodeHostname=$host NodeAddr=127.0.0.1 Port=$((port + i)) CPUs=4"
   done
   echo "PartitionName=all Nodes=n[1-$nodes] Default=YES MaxTime=INFINITE State=UP"
 }
@@ -79,6 +81,7 @@ kill_node() {
     kill -KILL "$pid" 2>/dev/null || true
   done
   rm -f "$dir/pids/$name"
+  scontrol update NodeName="$name" State=DOWN Reason=killed
 }
 
 down() {

@@ -29,12 +29,12 @@ PaperExperiment experiment_of(const DemoOptions& options) {
 
 void evaluate_into(const std::vector<EvaluationCase>& cases, const EvaluationLabels& labels,
                    RunStore& store, const std::filesystem::path& folder, Console& console) {
-  const evaluation::EvaluationSummary summary(evaluate(cases, store, console));
   std::filesystem::create_directories(folder);
-  write_evaluation(summary, labels, true, folder, console);
+  const Evaluation evaluation{evaluate(cases, store, folder, console)};
+  write_evaluation(evaluation, labels, true, folder, console);
   console.say("");
   console.say(labels.title);
-  console.say(evaluation::evaluation_lines(summary));
+  console.say(evaluation::evaluation_lines(*evaluation.summary));
 }
 
 void main_job(const PaperExperiment& experiment, const std::filesystem::path& recordings,

@@ -43,7 +43,7 @@ EvaluationLabels labels(Settings settings, const std::string& command_line) {
 
 /// What is to be compared, and how it is told.
 struct EvaluationPlan {
-  std::vector<EvaluationCase> cases;
+  Ablation ablation;
   EvaluationLabels labels;
 };
 
@@ -51,21 +51,22 @@ EvaluationPlan plan_of(const EvaluateOptions& options, const std::string& comman
   Settings settings = options.paper ? Settings::of_paper() : Settings();
   apply(options.config, settings);
   const std::vector<std::string>& methods = options.paper ? kPaperMethods : options.methods;
-  Ablation ablation{cross(options.logs, methods, settings), {}};
+  Ablation ablation{cross(options.logs, methods, settings)};
   if (options.ablate) ablation = with_parts_off(ablation.cases);
-  EvaluationPlan plan{std::move(ablation.cases), labels(settings, command_line)};
-  plan.labels.ablation = std::move(ablation.names);
+  EvaluationPlan plan{std::move(ablation), labels(settings, command_line)};
+  plan.labels.ablation = plan.ablation.names;
   return plan;
 }
 
 void write_results(const EvaluationPlan& plan, const EvaluateOptions& options, RunStore& store,
                    Console& console) {
   OutputDirectory directory(options.out);
-  Evaluation evaluation = evaluate_what_is_there(plan.cases, store, console);
-  const evaluation::EvaluationSummary summary(std::move(evaluation.results));
-  write_evaluation(summary, plan.labels, !options.no_report, directory.staging(), console);
+  const Evaluation evaluation =
+      evaluate_what_is_there(plan.ablation, store, directory.staging(), console);
+  write_evaluation(evaluation, plan.labels, !options.no_report, directory.staging(), console);
   directory.commit();
   store.finish();
+  const evaluation::EvaluationSummary& summary = *evaluation.summary;
   console.say(options.ablate ? evaluation::ablation_lines(summary, plan.labels.ablation)
                              : evaluation::evaluation_lines(summary));
   console.say(written_lines(options.out, !options.no_report));
@@ -82,7 +83,7 @@ void evaluate_logs(const EvaluateOptions& options, Call& call) {
   RunStore store(options.store, options.out, options.jobs);
   store.keep_if_stopped(call.console, [&] {
     if (store.is_worker()) {
-      evaluate_what_is_there(plan.cases, store, call.console);
+      evaluate_what_is_there(plan.ablation, store, {}, call.console);
     } else {
       write_results(plan, options, store, call.console);
     }

@@ -270,6 +270,57 @@ class Surveys {
   std::size_t unknown_ = 0;
 };
 
+/// One method on one log with one shift.
+struct Place {
+  std::size_t c;  ///< the case
+  double shift_s;
+};
+
+/// Those that are compared follow each other, so that nobody has to keep results until the others
+/// come: by recording, in order of appearance, by shift, by case.
+std::vector<Place> places_of(const std::vector<EvaluationCase>& cases) {
+  std::map<std::string, std::size_t> first;
+  std::vector<std::size_t> ordered;
+  for (std::size_t c = 0; c < cases.size(); ++c) {
+    first.emplace(cases[c].recording, c);
+    ordered.push_back(c);
+  }
+  const auto first_of = [&](std::size_t c) { return first.at(cases[c].recording); };
+  std::stable_sort(ordered.begin(), ordered.end(),
+                   [&](std::size_t a, std::size_t b) { return first_of(a) < first_of(b); });
+  std::vector<Place> places;
+  for (std::size_t begin = 0, end = 0; begin < ordered.size(); begin = end) {
+    std::vector<double> shifts_s;
+    for (end = begin; end < ordered.size() && first_of(ordered[end]) == first_of(ordered[begin]);
+         ++end) {
+      for (const double shift_s : cases[ordered[end]].settings->outages.shifts_s) {
+        if (std::find(shifts_s.begin(), shifts_s.end(), shift_s) == shifts_s.end())
+          shifts_s.push_back(shift_s);
+      }
+    }
+    for (const double shift_s : shifts_s) {
+      for (std::size_t k = begin; k < end; ++k) {
+        const std::vector<double>& own_s = cases[ordered[k]].settings->outages.shifts_s;
+        if (std::find(own_s.begin(), own_s.end(), shift_s) != own_s.end())
+          places.push_back({ordered[k], shift_s});
+      }
+    }
+  }
+  return places;
+}
+
+/// Names of runs, for those who outlive the runs.
+struct CaseNames {
+  std::vector<evaluation::RunName> of_case;  ///< without their shifts
+  std::vector<Place> places;
+
+  evaluation::RunName at(std::size_t run) const {
+    evaluation::RunName name = of_case[places[run].c];
+    name.shift_s = places[run].shift_s;
+    return name;
+  }
+};
+
 /// All runs of an evaluation.
 class EvaluationRuns {
  public:
@@ -282,32 +333,24 @@ class EvaluationRuns {
           surveys_.unknown(), surveys_.size()));
     }
     find_settings();
+    CaseNames names{{}, places_of(cases)};
     for (std::size_t c = 0; c < cases.size(); ++c) {
-      for (const double shift_s : cases[c].settings->outages.shifts_s)
-        places_.push_back({c, shift_s});
+      names.of_case.push_back({cases[c].recording, imu(c), label_of(cases[c]), 0});
     }
+    names_ = std::make_shared<const CaseNames>(std::move(names));
+    choose_tracks();
   }
 
   evaluation::Experiment experiment() const {
     evaluation::Experiment experiment;
-    experiment.size = places_.size();
-    experiment.run = [this](std::size_t i) { return run(places_[i]); };
-    experiment.named = [this](std::size_t i) { return named(places_[i]); };
-    ShownRuns shown(several_imus());
-    experiment.set_batch([&](std::size_t i) {
-      const evaluation::ExperimentResult name = named(places_[i]);
-      tracks_.push_back(shown.place(name).has_value());
-      return depends_on(places_[i], tracks_.back());
-    });
+    experiment.size = names_->places.size();
+    experiment.run = [this](std::size_t i) { return run(i); };
+    experiment.name = [names = names_](std::size_t i) { return names->at(i); };
+    experiment.set_batch([this](std::size_t i) { return depends_on(i); });
     return experiment;
   }
 
  private:
-  struct Place {
-    std::size_t c;
-    double shift_s;
-  };
-
   /// The IMU, and a hash in the place of a text of some kilobytes.
   struct Shown {
     std::string imu;
@@ -326,35 +369,32 @@ class EvaluationRuns {
     return given == imu::ImuOptions::kAsRecorded ? shown_[surveys_.of_case(c)].imu : given;
   }
 
-  bool several_imus() const {
-    for (std::size_t c = 1; c < cases_.size(); ++c) {
-      if (imu(c) != imu(0)) return true;
+  void choose_tracks() {
+    const std::vector<evaluation::RunName>& names = names_->of_case;
+    const bool several_imus =
+        std::any_of(names.begin(), names.end(),
+                    [&](const evaluation::RunName& name) { return name.imu != names.front().imu; });
+    evaluation::ShownRuns shown(several_imus);
+    for (std::size_t i = 0; i < names_->places.size(); ++i) {
+      tracks_.push_back(shown.place(names_->at(i)).has_value());
     }
-    return false;
   }
 
-  evaluation::ExperimentResult named(const Place& place) const {
-    evaluation::ExperimentResult result;
-    result.recording = cases_[place.c].recording;
-    result.imu = imu(place.c);
-    result.method = label_of(cases_[place.c]);
-    result.shift_s = place.shift_s;
-    return result;
-  }
-
-  evaluation::ExperimentRun run(const Place& place) const {
-    EvaluationCase c = cases_[place.c];
-    c.imu = imu(place.c);
+  evaluation::ExperimentRun run(std::size_t i) const {
+    const auto [case_index, shift_s] = names_->places[i];
+    EvaluationCase c = cases_[case_index];
+    c.imu = names_->of_case[case_index].imu;
     c.settings = std::make_shared<const Settings>(
-        settings_of(surveys_.text(surveys_.of_case(place.c)), c.settings->outages.shifts_s));
-    evaluation::ExperimentRun run = experiment_run(c, place.shift_s, logs_);
-    run.with_track = tracks_[static_cast<std::size_t>(&place - places_.data())];
+        settings_of(surveys_.text(surveys_.of_case(case_index)), c.settings->outages.shifts_s));
+    evaluation::ExperimentRun run = experiment_run(c, shift_s, logs_);
+    run.with_track = tracks_[i];
     return run;
   }
 
-  std::string depends_on(const Place& place, bool with_track) const {
-    return run_text(store_, surveys_.content(place.c), cases_[place.c].method, place.shift_s,
-                    with_track, shown_[surveys_.of_case(place.c)].hash);
+  std::string depends_on(std::size_t i) const {
+    const auto [c, shift_s] = names_->places[i];
+    return run_text(store_, surveys_.content(c), cases_[c].method, shift_s, tracks_[i],
+                    shown_[surveys_.of_case(c)].hash);
   }
 
   const std::vector<EvaluationCase>& cases_;
@@ -362,21 +402,103 @@ class EvaluationRuns {
   Surveys surveys_;
   std::shared_ptr<SharedLogs> logs_ = std::make_shared<SharedLogs>();
   std::vector<Shown> shown_;
-  std::vector<Place> places_;
-  mutable std::vector<bool> tracks_;
+  std::shared_ptr<const CaseNames> names_;
+  std::vector<bool> tracks_;
 };
 
 void check_all(const std::vector<EvaluationCase>& cases) {
   for (const EvaluationCase& c : cases) experiment_runs(c);
 }
 
-/// Of a recording, by whichever of its runs comes first.
-void note_remarks(const evaluation::ExperimentResult& result,
-                  std::map<std::string, std::optional<std::string>>& damages, Console& console) {
-  if (!result.failure.empty()) return;
-  if (!damages.emplace(result.recording, result.remarks.damage).second) return;
-  warn(result.recording, result.remarks.notices, console);
+/// The runs of some methods, or of all others.
+evaluation::RunNames names_if(const evaluation::Experiment& experiment,
+                              const std::set<std::string>& methods, bool are_wanted) {
+  const auto runs = std::make_shared<std::vector<std::size_t>>();
+  for (std::size_t i = 0; i < experiment.size; ++i) {
+    if ((methods.count(experiment.name(i).method) > 0) == are_wanted) runs->push_back(i);
+  }
+  return {runs->size(),
+          [runs, name = experiment.name](std::size_t i) { return name(runs->at(i)); }};
 }
+
+/// One reading of all records: tables and drift.csv come about while results come and go.
+class Gathering {
+ public:
+  /// Without those methods that are known to fail.
+  Gathering(const evaluation::Experiment& experiment,
+            const std::vector<evaluation::AblationCase>& ablation,
+            const std::set<std::string>& left_out, const std::filesystem::path& folder,
+            Console& console)
+      : experiment_(experiment),
+        left_out_(left_out),
+        drifts_(folder / "drift.csv"),
+        summary_(names_if(experiment, left_out, false)),
+        console_(console) {
+    for (const evaluation::AblationCase& what : ablation) {
+      if (what.without.empty() && is_wanted(what.label())) whole_.insert(what.label());
+    }
+    if (!whole_.empty()) as_configured_.emplace(names_if(experiment, whole_, true));
+  }
+
+  void read(evaluation::Executor& executor) {
+    for (std::size_t i = 0; i < experiment_.size; ++i) {
+      console_.progress("gathering",
+                        static_cast<double>(i) / static_cast<double>(experiment_.size));
+      if (is_wanted(experiment_.name(i).method)) {
+        add(evaluation::result_of(experiment_, i, executor));
+      }
+    }
+    drifts_.close();
+  }
+
+  /// Methods and a line for each of their runs that failed; with any of them nothing else is whole.
+  const std::vector<std::pair<std::string, std::string>>& failures() const { return failures_; }
+
+  Evaluation result() {
+    Evaluation evaluation;
+    summary_.finish();
+    if (as_configured_) as_configured_->finish();
+    evaluation.summary = std::move(summary_);
+    evaluation.as_configured = std::move(as_configured_);
+    for (const auto& [recording, damage] : damages_) {
+      if (damage) evaluation.damages.push_back(*damage);
+    }
+    return evaluation;
+  }
+
+ private:
+  bool is_wanted(const std::string& method) const { return left_out_.count(method) == 0; }
+
+  void add(evaluation::ExperimentResult result) {
+    if (!result.failure.empty()) {
+      failures_.emplace_back(result.method,
+                             fmt::format("method {}: {}", result.method, result.failure));
+      return;
+    }
+    note_remarks(result);
+    warn(result, console_);
+    if (!failures_.empty()) return;
+    drifts_.add(result);
+    if (whole_.count(result.method) > 0) as_configured_->add(result);
+    summary_.add(std::move(result));
+  }
+
+  /// Of a recording, by whichever of its runs comes first.
+  void note_remarks(const evaluation::ExperimentResult& result) {
+    if (!damages_.emplace(result.recording, result.remarks.damage).second) return;
+    warn(result.recording, result.remarks.notices, console_);
+  }
+
+  const evaluation::Experiment& experiment_;
+  const std::set<std::string>& left_out_;
+  exports::DriftFile drifts_;
+  evaluation::EvaluationSummary summary_;
+  std::set<std::string> whole_;
+  std::optional<evaluation::EvaluationSummary> as_configured_;
+  std::vector<std::pair<std::string, std::string>> failures_;
+  std::map<std::string, std::optional<std::string>> damages_;
+  Console& console_;
+};
 
 }  // namespace
 
@@ -406,47 +528,64 @@ void check_log(const std::string& log, const Settings& settings) {
   rawlog::RawlogSource(log, settings.imu.sample_kind(), settings.rawlog);
 }
 
-Evaluation evaluate_what_is_there(const std::vector<EvaluationCase>& cases, RunStore& store,
-                                  Console& console) {
-  check_all(cases);
-  const EvaluationRuns runs(cases, store, console);
+Evaluation gather(const evaluation::Experiment& experiment,
+                  const std::vector<evaluation::AblationCase>& ablation,
+                  evaluation::Executor& executor, const std::filesystem::path& folder,
+                  Console& console) {
+  std::set<std::string> failed;
+  std::vector<std::string> failures;
+  while (true) {
+    Gathering gathering(experiment, ablation, failed, folder, console);
+    gathering.read(executor);
+    for (const auto& [method, line] : gathering.failures()) {
+      failed.insert(method);
+      failures.push_back(line);
+    }
+    if (gathering.failures().empty()) {
+      Evaluation evaluation = gathering.result();
+      evaluation.failures = std::move(failures);
+      return evaluation;
+    }
+    if (names_if(experiment, failed, false).size == 0) throw DataError(failures.front());
+  }
+}
+
+Evaluation evaluate_what_is_there(const Ablation& ablation, RunStore& store,
+                                  const std::filesystem::path& folder, Console& console) {
+  check_all(ablation.cases);
+  const EvaluationRuns runs(ablation.cases, store, console);
   const evaluation::Experiment experiment = runs.experiment();
   store.runs().complete(experiment.batch, console.progress_of("evaluating"));
-  Evaluation evaluation;
-  std::map<std::string, std::optional<std::string>> damages;
-  for (std::size_t i = 0; i < experiment.size && !store.is_worker(); ++i) {
-    console.progress("gathering", static_cast<double>(i) / static_cast<double>(experiment.size));
-    evaluation.results.push_back(evaluation::result_of(experiment, i, store.runs()));
-    note_remarks(evaluation.results.back(), damages, console);
-    evaluation.results.back().remarks = {};
+  if (store.is_worker()) {
+    store.report(experiment.size, console);
+    return {};
   }
+  Evaluation evaluation = gather(experiment, ablation.names, store.runs(), folder, console);
   store.report(experiment.size, console);
-  if (store.is_worker()) return evaluation;
-  evaluation.failures = evaluation::take_out_failed(evaluation.results);
-  if (evaluation.results.empty()) throw DataError(evaluation.failures.front());
-  for (const auto& [recording, damage] : damages) {
-    if (damage) evaluation.damages.push_back(*damage);
-  }
-  for (const evaluation::ExperimentResult& result : evaluation.results) warn(result, console);
   return evaluation;
 }
 
-std::vector<evaluation::ExperimentResult> evaluate(const std::vector<EvaluationCase>& cases,
-                                                   RunStore& store, Console& console) {
-  Evaluation evaluation = evaluate_what_is_there(cases, store, console);
+evaluation::EvaluationSummary evaluate(const std::vector<EvaluationCase>& cases, RunStore& store,
+                                       const std::filesystem::path& folder, Console& console) {
+  Evaluation evaluation = evaluate_what_is_there({cases}, store, folder, console);
   if (!evaluation.damages.empty()) throw DataError(evaluation.damages.front());
   if (!evaluation.failures.empty()) throw DataError(evaluation.failures.front());
-  return std::move(evaluation.results);
+  return std::move(*evaluation.summary);
 }
 
-void write_evaluation(const evaluation::EvaluationSummary& summary, const EvaluationLabels& labels,
+void write_evaluation(const Evaluation& evaluation, const EvaluationLabels& labels,
                       bool with_report, const std::filesystem::path& folder, Console& console) {
+  const evaluation::EvaluationSummary& summary = *evaluation.summary;
   exports::write_evaluation(summary, labels.origin, folder,
                             evaluation::ablation_rows(summary.overall(), labels.ablation));
   if (!with_report) return;
   console.progress("drawing", 0);
-  page::write_report(content::evaluation_page(evaluation_report(summary, labels)),
-                     (folder / "report").string());
+  const content::EvaluationReport report =
+      labels.ablation.empty()
+          ? evaluation_report(summary, labels)
+          : ablation_report(summary, evaluation.as_configured ? *evaluation.as_configured : summary,
+                            labels);
+  page::write_report(content::evaluation_page(report), (folder / "report").string());
 }
 
 }  // namespace foucault::app

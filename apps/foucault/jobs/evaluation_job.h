@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,10 +31,10 @@ std::vector<EvaluationCase> cross(const std::vector<std::string>& logs,
                                   const std::vector<std::string>& methods,
                                   const Settings& settings);
 
-/// Cases, and the names of their methods.
+/// Cases, and the names of their methods if they are those of an ablation.
 struct Ablation {
   std::vector<EvaluationCase> cases;
-  std::vector<evaluation::AblationCase> names;
+  std::vector<evaluation::AblationCase> names = {};
 };
 
 /// Each case, and behind it the same with each aid off that it uses, with all aids off, without
@@ -51,24 +52,35 @@ std::vector<evaluation::ExperimentRun> experiment_runs(
 /// Opens a log: what is missing or no rawlog shows before hours are spent on others.
 void check_log(const std::string& log, const Settings& settings);
 
+/// What came out of many runs.
 struct Evaluation {
-  std::vector<evaluation::ExperimentResult> results;
+  std::optional<evaluation::EvaluationSummary> summary;  ///< a worker has none
+  /// Of an ablation: of the cases with the configuration as it is, if any has results.
+  std::optional<evaluation::EvaluationSummary> as_configured;
   std::vector<std::string> damages;   ///< logs that break off, a line each; results are up to there
   std::vector<std::string> failures;  ///< of methods, a line each; they have no results
 };
 
-/// Runs all cases; results in the order of the cases, then of the shifts. A worker has none: its
-/// share of the runs is in the store. Says what users should know about the data. Throws DataError,
-/// also if every method failed, UsageError, Interrupted.
-Evaluation evaluate_what_is_there(const std::vector<EvaluationCase>& cases, RunStore& store,
-                                  Console& console);
+/// Reads the records of all runs, those of compared runs one after the other, and writes drift.csv
+/// into `folder` meanwhile; keeps of them what the summary needs. Throws DataError, also if every
+/// method failed, Interrupted.
+Evaluation gather(const evaluation::Experiment& experiment,
+                  const std::vector<evaluation::AblationCase>& ablation,
+                  evaluation::Executor& executor, const std::filesystem::path& folder,
+                  Console& console);
+
+/// Runs all cases and writes drift.csv into `folder`, run by run: by recording, shift, case. A
+/// worker writes nothing: its share of the runs is in the store. Says what users should know about
+/// the data. Throws DataError, also if every method failed, UsageError, Interrupted.
+Evaluation evaluate_what_is_there(const Ablation& ablation, RunStore& store,
+                                  const std::filesystem::path& folder, Console& console);
 
 /// The same with a DataError for a log that breaks off and a method that fails.
-std::vector<evaluation::ExperimentResult> evaluate(const std::vector<EvaluationCase>& cases,
-                                                   RunStore& store, Console& console);
+evaluation::EvaluationSummary evaluate(const std::vector<EvaluationCase>& cases, RunStore& store,
+                                       const std::filesystem::path& folder, Console& console);
 
-/// The files of an evaluation, and its report if it is asked for.
-void write_evaluation(const evaluation::EvaluationSummary& summary, const EvaluationLabels& labels,
+/// The other files of an evaluation, and its report if it is asked for.
+void write_evaluation(const Evaluation& evaluation, const EvaluationLabels& labels,
                       bool with_report, const std::filesystem::path& folder, Console& console);
 
 }  // namespace foucault::app

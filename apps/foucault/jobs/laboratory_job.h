@@ -1,11 +1,14 @@
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
+#include "console.h"
 #include "foucault/laboratory/fault_study.h"
 #include "foucault/laboratory/return_study.h"
 #include "foucault/laboratory/start_study.h"
+#include "jobs/run_store.h"
 #include "settings.h"
 
 /// The laboratory's studies with this program's recordings and methods.
@@ -17,6 +20,20 @@ std::vector<laboratory::FaultOutcome> run_fault(const laboratory::FaultCase& fau
                                                 const std::vector<std::string>& methods,
                                                 const Settings& settings, int64_t seed,
                                                 const std::string& log);
+
+/// Each fault on the trip of each seed, by each method.
+struct FaultStudy {
+  std::vector<std::string> faults;
+  std::vector<std::string> methods;
+  std::vector<int64_t> seeds;
+};
+
+/// In the order of faults, seeds, methods. A trip with its fault is written into `folder`,
+/// processed with each method as `foucault run` does, and removed. A worker has no outcomes: its
+/// share of them is in the store. Throws UsageError, StoreError.
+std::vector<laboratory::FaultOutcome> study_faults(const FaultStudy& study, RunStore& store,
+                                                   const std::filesystem::path& folder,
+                                                   Console& console);
 
 laboratory::ReturnOutcome study_return(const laboratory::ReturnCase& what,
                                        const Settings& settings);

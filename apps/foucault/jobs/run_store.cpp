@@ -127,12 +127,20 @@ void RunStore::keep_if_stopped(Console& console, const std::function<void()>& wo
                                runs_.computed(), hidden_));
     }
     throw;
+  } catch (...) {
+    say_damages(console);
+    throw;
   }
+}
+
+void RunStore::say_damages(Console& console) const {
+  if (on_disk_ == nullptr) return;
+  for (const std::string& remark : on_disk_->remarks()) console.warn(remark);
 }
 
 void RunStore::report(std::size_t all_runs, Console& console) const {
   if (on_disk_ == nullptr) return;
-  for (const std::string& remark : on_disk_->remarks()) console.warn(remark);
+  say_damages(console);
   const std::size_t computed = runs_.computed();
   if (is_worker() || all_runs > computed) {
     console.say(fmt::format("{:<10} {} runs computed, {} found in {}", "store", computed,

@@ -48,7 +48,8 @@ class RunStore {
   /// Of this program, whatever its number says.
   const std::string& version() const { return version_; }
 
-  /// Does the work of a command. If it is stopped, a hidden store stays, and the user is told.
+  /// Does the work of a command. If it is stopped, a hidden store stays, and the user is told; if
+  /// it fails, of records that were damaged, too.
   void keep_if_stopped(Console& console, const std::function<void()>& work);
 
   /// The results are written: a hidden store has done its duty.
@@ -59,6 +60,7 @@ class RunStore {
 
  private:
   void remove();
+  void say_damages(Console& console) const;
 
   std::string hidden_;                              ///< folder; empty: the user's own, or none
   std::vector<std::filesystem::path> new_parents_;  ///< folders above it that are not there yet

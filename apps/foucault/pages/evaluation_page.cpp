@@ -22,33 +22,31 @@ using content::OutageMap;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kLongestLine = 5;  ///< over longer holes between points no line is drawn [s]
-constexpr std::size_t kMostRecordings = 6;
 
 /// The runs of all methods over one recording with one shift.
 using ComparedRuns = std::vector<const evaluation::ExperimentResult*>;
 
 content::Bounded bounded(const evaluation::Estimate& e) { return {e.value, e.low, e.high}; }
 
-content::OutageCurve curve(const evaluation::MethodOutages::Entry& entry) {
+content::OutageCurve curve(const evaluation::DrawnOutage& outage) {
   content::OutageCurve curve;
-  curve.label = fmt::format("{}, shift {} s, outage {}", entry.run->recording, entry.run->shift_s,
-                            entry.drift->outage.index + 1);
-  for (const evaluation::DriftSample& sample : entry.drift->samples) {
+  curve.label = fmt::format("{}, shift {} s, outage {}", outage.recording, outage.shift_s,
+                            outage.drift.outage.index + 1);
+  for (const evaluation::DriftSample& sample : outage.drift.samples) {
     curve.since_begin_s.push_back(sample.since_begin_s);
     curve.horizontal_m.push_back(sample.horizontal());
     curve.vertical_m.push_back(sample.vertical());
     curve.north_m.push_back(sample.error_n.x());
     curve.east_m.push_back(sample.error_n.y());
   }
-  curve.max_horizontal_m = entry.drift->maximum.horizontal;
-  curve.max_vertical_m = entry.drift->maximum.vertical;
+  curve.max_horizontal_m = outage.drift.maximum.horizontal;
+  curve.max_vertical_m = outage.drift.maximum.vertical;
   return curve;
 }
 
 content::MethodCurves method_curves(const evaluation::MethodOutages& outages) {
   content::MethodCurves curves{outages.method, {}};
-  for (const evaluation::MethodOutages::Entry& entry : outages.entries)
-    curves.outages.push_back(curve(entry));
+  for (const auto& outage : outages.drawn) curves.outages.push_back(curve(*outage));
   return curves;
 }
 
@@ -56,8 +54,8 @@ content::MethodCurves method_curves(const evaluation::MethodOutages& outages) {
 std::vector<DriftCase> drift_cases(const std::vector<evaluation::MethodOutages>& outages) {
   std::vector<DriftCase> cases;
   for (const evaluation::MethodOutages& o : outages) {
-    if (o.entries.empty()) continue;
-    if (cases.empty() || cases.back().name != o.group) cases.push_back({o.group, {}});
+    if (o.empty()) continue;
+    if (cases.empty() || cases.back().name != o.group) cases.push_back({o.group, {}, o.size()});
     cases.back().methods.push_back(method_curves(o));
   }
   return cases;
@@ -66,7 +64,7 @@ std::vector<DriftCase> drift_cases(const std::vector<evaluation::MethodOutages>&
 std::vector<DriftRms> drift_rms(const std::vector<evaluation::MethodOutages>& rows) {
   std::vector<DriftRms> rms;
   for (const evaluation::MethodOutages& row : rows) {
-    if (row.entries.empty()) continue;
+    if (row.empty()) continue;
     rms.push_back({row.group, row.method, bounded(evaluation::summarize(row.horizontal_max()).rms),
                    bounded(evaluation::summarize(row.vertical_max()).rms)});
   }
@@ -74,13 +72,10 @@ std::vector<DriftRms> drift_rms(const std::vector<evaluation::MethodOutages>& ro
 }
 
 std::vector<ComparedRuns> shown_runs(const evaluation::EvaluationSummary& summary) {
-  ShownRuns places(summary.row_header() == "IMU");
   std::vector<ComparedRuns> shown;
-  for (const evaluation::ExperimentResult& r : summary.results()) {
-    const std::optional<std::size_t> place = places.place(r);
-    if (!place) continue;
-    if (*place == shown.size()) shown.emplace_back();
-    shown[*place].push_back(&r);
+  for (const evaluation::ExperimentResult& r : summary.shown()) {
+    if (shown.empty() || !shown.back().front()->is_compared_with(r)) shown.emplace_back();
+    shown.back().push_back(&r);
   }
   return shown;
 }
@@ -91,14 +86,19 @@ std::string name_of(const ComparedRuns& runs, const evaluation::EvaluationSummar
              : runs.front()->recording;
 }
 
+bool has_other_shift(const evaluation::RunName& shown, const evaluation::RunNames& names) {
+  for (std::size_t i = 0; i < names.size; ++i) {
+    const evaluation::RunName name = names.at(i);
+    if (name.recording == shown.recording && name.shift_s != shown.shift_s) return true;
+  }
+  return false;
+}
+
 /// The recording, and which of its shifts is shown if there are several.
 std::string shift_text(const std::string& name, const ComparedRuns& runs,
-                       const std::vector<evaluation::ExperimentResult>& results) {
-  const evaluation::ExperimentResult& shown = *runs.front();
-  const bool several = std::any_of(results.begin(), results.end(), [&](const auto& r) {
-    return r.recording == shown.recording && r.shift_s != shown.shift_s;
-  });
-  if (!several) return name;
+                       const evaluation::EvaluationSummary& summary) {
+  const evaluation::RunName& shown = *runs.front();
+  if (!has_other_shift(shown, summary.names())) return name;
   return fmt::format("{}, only the outages shifted by {} s", name, shown.shift_s);
 }
 
@@ -193,11 +193,11 @@ content::DistanceDrift::Method distance_method(const evaluation::MethodOutages& 
                                                const evaluation::DistanceProfile& profile) {
   content::DistanceDrift::Method method;
   method.method = outages.method;
-  for (const evaluation::MethodOutages::Entry& entry : outages.entries) {
-    method.distance_km.push_back(entry.drift->distance_m * 1e-3);
+  for (const auto& outage : outages.drawn) {
+    method.distance_km.push_back(outage->drift.distance_m * 1e-3);
+    method.horizontal_m.push_back(outage->drift.maximum.horizontal);
+    method.vertical_m.push_back(outage->drift.maximum.vertical);
   }
-  method.horizontal_m = outages.horizontal_max();
-  method.vertical_m = outages.vertical_max();
   for (const evaluation::ProfileBin& bin : profile.bins) {
     for (const evaluation::BinDrift& drift : bin.methods) {
       if (drift.method != outages.method) continue;
@@ -211,8 +211,10 @@ std::vector<content::DistanceDrift> distance_drifts(const evaluation::Evaluation
   std::vector<content::DistanceDrift> drifts;
   for (const evaluation::DistanceProfile& profile : summary.distances()) {
     content::DistanceDrift drift{profile.group, {}};
-    for (const evaluation::MethodOutages& o : summary.distance_groups()) {
-      if (o.group == profile.group) drift.methods.push_back(distance_method(o, profile));
+    for (const evaluation::MethodOutages& o : summary.cases()) {
+      if (o.group != profile.group) continue;
+      drift.methods.push_back(distance_method(o, profile));
+      drift.all = o.size();
     }
     drifts.push_back(std::move(drift));
   }
@@ -291,11 +293,10 @@ std::vector<page::Table> consistency_tables(const evaluation::EvaluationSummary&
 std::vector<page::KeyNumber> key_numbers(const evaluation::EvaluationSummary& summary) {
   std::vector<page::KeyNumber> numbers;
   for (const evaluation::MethodOutages& o : summary.overall()) {
-    numbers.push_back(
-        {fmt::format("{}, horizontal RMS", o.method),
-         fmt::format("{:.2f}", evaluation::root_mean_square(o.horizontal_max())), "m",
-         fmt::format("vertical {:.2f} m, {} outages",
-                     evaluation::root_mean_square(o.vertical_max()), o.entries.size())});
+    numbers.push_back({fmt::format("{}, horizontal RMS", o.method),
+                       fmt::format("{:.2f}", evaluation::root_mean_square(o.horizontal_max())), "m",
+                       fmt::format("vertical {:.2f} m, {} outages",
+                                   evaluation::root_mean_square(o.vertical_max()), o.size())});
   }
   return numbers;
 }
@@ -313,32 +314,6 @@ std::vector<page::Table> report_tables(const evaluation::EvaluationSummary& summ
   return tables;
 }
 
-/// Cases of the figures: IMUs, or all recordings together.
-std::vector<DriftCase> shown_cases(const evaluation::EvaluationSummary& summary) {
-  if (summary.row_header() == "IMU") return drift_cases(summary.rows());
-  std::vector<DriftCase> cases = drift_cases(summary.overall());
-  const std::vector<evaluation::ExperimentResult>& results = summary.results();
-  const bool only_one = std::all_of(results.begin(), results.end(), [&](const auto& result) {
-    return result.recording == results.front().recording;
-  });
-  if (only_one) cases.front().name = results.front().recording;
-  return cases;
-}
-
-/// Of the methods with the configuration as it is; all where none of them has any.
-std::vector<evaluation::ExperimentResult> as_configured(
-    const std::vector<evaluation::ExperimentResult>& results,
-    const std::vector<evaluation::AblationCase>& ablation) {
-  std::vector<evaluation::ExperimentResult> whole;
-  for (const evaluation::ExperimentResult& result : results) {
-    const bool is_whole = std::any_of(ablation.begin(), ablation.end(), [&](const auto& what) {
-      return what.without.empty() && what.label() == result.method;
-    });
-    if (is_whole) whole.push_back(result);
-  }
-  return whole.empty() ? results : whole;
-}
-
 page::Table ablation_table(const evaluation::EvaluationSummary& summary,
                            const std::vector<evaluation::AblationCase>& ablation) {
   return report_table(
@@ -349,8 +324,10 @@ page::Table ablation_table(const evaluation::EvaluationSummary& summary,
       "that follows is of the configuration as it is.");
 }
 
-content::EvaluationReport report_of(const evaluation::EvaluationSummary& summary,
-                                    const EvaluationLabels& labels) {
+}  // namespace
+
+content::EvaluationReport evaluation_report(const evaluation::EvaluationSummary& summary,
+                                            const EvaluationLabels& labels) {
   content::EvaluationReport report;
   report.title = labels.title;
   report.subtitle = "Outages: " + evaluation::outages_text(summary);
@@ -359,7 +336,7 @@ content::EvaluationReport report_of(const evaluation::EvaluationSummary& summary
   report.key_numbers = key_numbers(summary);
   report.tables = report_tables(summary);
   report.rms = drift_rms(summary.rows());
-  report.cases = shown_cases(summary);
+  report.cases = drift_cases(summary.cases());
   report.distances = distance_drifts(summary);
   report.distance_tables = distance_tables(summary);
   report.normalized = normalized_errors(summary);
@@ -369,7 +346,7 @@ content::EvaluationReport report_of(const evaluation::EvaluationSummary& summary
     report.timelines.push_back(timeline(runs, name));
     report.maps.push_back(outage_map(runs, name));
     report.timelines.back().subtitle = report.maps.back().subtitle =
-        shift_text(name, runs, summary.results());
+        shift_text(name, runs, summary);
   }
   const auto& [command_line, config, version] = labels.origin;
   if (!command_line.empty()) report.listings.push_back({"Command", command_line});
@@ -378,29 +355,14 @@ content::EvaluationReport report_of(const evaluation::EvaluationSummary& summary
   return report;
 }
 
-}  // namespace
-
-std::optional<std::size_t> ShownRuns::place(const evaluation::ExperimentResult& run) {
-  for (std::size_t i = 0; i < firsts_.size(); ++i) {
-    const First& first = firsts_[i];
-    if (first.imu != run.imu || (!by_imu_ && first.recording != run.recording)) continue;
-    const bool is_compared = first.recording == run.recording && first.shift_s == run.shift_s;
-    return is_compared ? std::optional(i) : std::nullopt;
-  }
-  if (firsts_.size() == kMostRecordings) return std::nullopt;
-  firsts_.push_back({run.recording, run.imu, run.shift_s});
-  return firsts_.size() - 1;
-}
-
 page::Table report_table(const evaluation::TextTable& table, const std::string& note) {
   return {table.title, note, false, table.header, table.rows};
 }
 
-content::EvaluationReport evaluation_report(const evaluation::EvaluationSummary& summary,
-                                            const EvaluationLabels& labels) {
-  if (labels.ablation.empty()) return report_of(summary, labels);
-  const evaluation::EvaluationSummary whole(as_configured(summary.results(), labels.ablation));
-  content::EvaluationReport report = report_of(whole, labels);
+content::EvaluationReport ablation_report(const evaluation::EvaluationSummary& summary,
+                                          const evaluation::EvaluationSummary& as_configured,
+                                          const EvaluationLabels& labels) {
+  content::EvaluationReport report = evaluation_report(as_configured, labels);
   report.tables.insert(report.tables.begin(), ablation_table(summary, labels.ablation));
   for (const evaluation::AblationRow& row :
        evaluation::ablation_rows(summary.overall(), labels.ablation)) {

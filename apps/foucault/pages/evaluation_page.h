@@ -1,6 +1,5 @@
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,30 +18,14 @@ struct EvaluationLabels {
   std::vector<evaluation::AblationCase> ablation = {};
 };
 
-/// Of which runs the report draws errors over time and maps: the first shift of each recording (of
-/// each IMU's first recording, if there are several IMUs), of the first few recordings.
-class ShownRuns {
- public:
-  explicit ShownRuns(bool several_imus) : by_imu_(several_imus) {}
-
-  /// The number of the figure that a run is drawn in, if any; to be asked in the order of the runs.
-  std::optional<std::size_t> place(const evaluation::ExperimentResult& run);
-
- private:
-  struct First {
-    std::string recording;
-    std::string imu;
-    double shift_s;
-  };
-
-  bool by_imu_;
-  std::vector<First> firsts_;
-};
-
-/// The report of an evaluation as plain data. Of an ablation: a table of all cases, and all else of
-/// the methods with the configuration as it is.
+/// The report of an evaluation as plain data.
 content::EvaluationReport evaluation_report(const evaluation::EvaluationSummary& summary,
                                             const EvaluationLabels& labels);
+
+/// Of an ablation: a table of all its cases, and all else of those as configured.
+content::EvaluationReport ablation_report(const evaluation::EvaluationSummary& summary,
+                                          const evaluation::EvaluationSummary& as_configured,
+                                          const EvaluationLabels& labels);
 
 page::Table report_table(const evaluation::TextTable& table, const std::string& note = "");
 

@@ -1,13 +1,16 @@
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "foucault/core/error.h"
 #include "jobs/evaluation_job.h"
 #include "jobs/simulation_job.h"
 #include "pages/evaluation_page.h"
+#include "support/drifting_experiment.h"
 #include "support/table.h"
 #include "support/test_folder.h"
 
@@ -43,10 +46,10 @@ class EvaluationTest : public testing::Test {
     return settings;
   }
 
-  static std::vector<evaluation::ExperimentResult> results(int threads) {
+  static Evaluation results(int threads, const test::TestFolder& out) {
     Console console(true);
     RunStore store(threads);
-    return evaluate(cross({log()}, {"ekf", "rough"}, settings()), store, console);
+    return {evaluate(cross({log()}, {"ekf", "rough"}, settings()), store, out.path(), console)};
   }
 
   static test::TestFolder* folder_;
@@ -55,22 +58,21 @@ class EvaluationTest : public testing::Test {
 test::TestFolder* EvaluationTest::folder_ = nullptr;
 
 TEST_F(EvaluationTest, SameNumbersWithOneThreadAndTwo) {
-  const std::vector<double>& marks_s = evaluation::default_drift_marks_s();
-  const std::string one = evaluation::to_csv(
-      evaluation::drift_record_table(evaluation::drift_records(results(1)), marks_s));
-  const std::string two = evaluation::to_csv(
-      evaluation::drift_record_table(evaluation::drift_records(results(2)), marks_s));
-  EXPECT_EQ(one, two);
+  const test::TestFolder out;
+  results(1, out);
+  const std::string one = out.text("drift.csv");
+  results(2, out);
+  EXPECT_EQ(out.text("drift.csv"), one);
   EXPECT_EQ(std::count(one.begin(), one.end(), '\n'), 1 + 2 * 6);
 }
 
 TEST_F(EvaluationTest, WritesWhatItFound) {
   const test::TestFolder out;
-  const evaluation::EvaluationSummary summary(results(2));
+  const Evaluation evaluation = results(2, out);
   EvaluationLabels labels;
   labels.origin = {"foucault evaluate trip.rawlog", "imu: {preset: ADIS16465}\n", "1"};
   Console console(true);
-  write_evaluation(summary, labels, false, out.path(), console);
+  write_evaluation(evaluation, labels, false, out.path(), console);
 
   const auto json = nlohmann::json::parse(out.text("metrics.json"));
   for (const char* method : {"ekf", "rough"}) {
@@ -116,18 +118,19 @@ TEST_F(EvaluationTest, DriftByDistanceOfATripThatGoesFar) {
   far.outages.period_s = 30;
   far.outages.shifts_s = {0, 15};
   RunStore store(2);
-  const evaluation::EvaluationSummary summary(
-      evaluate(cross({folder / "flight.rawlog"}, {"ekf", "full"}, far), store, console));
+  const Evaluation evaluation{evaluate(cross({folder / "flight.rawlog"}, {"ekf", "full"}, far),
+                                       store, folder.path(), console)};
+  const evaluation::EvaluationSummary& summary = *evaluation.summary;
 
   ASSERT_EQ(summary.distances().size(), 1u);
   const evaluation::DistanceProfile& profile = summary.distances()[0];
   EXPECT_EQ(profile.group, "flight");
   std::size_t outages = 0;
   for (const evaluation::ProfileBin& bin : profile.bins) outages += bin.bin.outages.size();
-  EXPECT_EQ(outages, summary.overall()[0].entries.size());
+  EXPECT_EQ(outages, summary.overall()[0].size());
   EXPECT_GT(profile.bins.back().bin.to_km, evaluation::kFarKm);
 
-  write_evaluation(summary, {}, false, folder.path(), console);
+  write_evaluation(evaluation, {}, false, folder.path(), console);
   const auto json = nlohmann::json::parse(folder.text("metrics.json"));
   const auto& first = json["distances"][0]["bins"][0];
   EXPECT_EQ(first["methods"]["ekf"]["horizontal_relative"]["value"], 0);
@@ -145,7 +148,9 @@ TEST_F(EvaluationTest, DriftByDistanceOfATripThatGoesFar) {
 
 /// The report's numbers are those of metrics.json.
 TEST_F(EvaluationTest, ReportHoldsAllFigures) {
-  const evaluation::EvaluationSummary summary(results(2));
+  const test::TestFolder out;
+  const Evaluation evaluation = results(2, out);
+  const evaluation::EvaluationSummary& summary = *evaluation.summary;
   const content::EvaluationReport report = evaluation_report(summary, {});
   EXPECT_THAT(report.methods, ElementsAre("ekf", "rough"));
   ASSERT_EQ(report.rms.size(), 2u);
@@ -167,12 +172,71 @@ TEST_F(EvaluationTest, AShortLogIsToldWhatToChange) {
   Console console(true);
   RunStore store(1);
   try {
-    evaluate(cross({log()}, {"ekf"}, settings), store, console);
+    evaluate(cross({log()}, {"ekf"}, settings), store, test::TestFolder().path(), console);
     FAIL();
   } catch (const DataError& error) {
     EXPECT_THAT(error.what(), HasSubstr("trip: no outage fits into its 300 s"));
     EXPECT_THAT(error.what(), HasSubstr("outages.first_s"));
   }
+}
+
+/// Each key finds one and the same record.
+class OneRecord : public store::Records {
+ public:
+  explicit OneRecord(store::Record record) : record_(std::move(record)) {}
+  bool has(const store::Key&) const override { return true; }
+  std::optional<store::Record> find(const store::Key&) override { return record_; }
+  void put(const store::Key&, const store::Record&) override {}
+
+ private:
+  store::Record record_;
+};
+
+/// Of this process, since forget_peak() [bytes].
+double peak_memory() {
+  std::ifstream status("/proc/self/status");
+  double kilobytes = 0;
+  for (std::string word; status >> word;) {
+    if (word == "VmHWM:") status >> kilobytes;
+  }
+  return 1e3 * kilobytes;
+}
+
+void forget_peak() { std::ofstream("/proc/self/clear_refs") << 5; }
+
+/// Two methods on recordings of their own, seven outages of 60 s at 1 Hz: a record of 25 kB.
+TEST(Gather, KeepsOfARunWhatTablesNeed) {
+  constexpr std::size_t kRuns = 20'000, kOutages = 7;
+  const auto record = [] {
+    evaluation::OutageOptions outages;
+    outages.first_s = 100;
+    outages.period_s = 100;
+    evaluation::ExperimentRun run = test::drifting_run("a", "good", 1, 0, 800);
+    run.schedule = evaluation::OutageSchedule(outages, 0);
+    run.with_track = false;
+    const evaluation::Experiment one = evaluation::experiment({run});
+    return one.batch.compute(0, [](double) {});
+  }();
+  EXPECT_GT(record.content.size(), 20'000u);
+  evaluation::Experiment experiment;
+  experiment.size = kRuns;
+  experiment.name = [](std::size_t i) -> evaluation::RunName {
+    return {fmt::format("{:06}", i / 2), "none", i % 2 == 0 ? "good" : "bad", 0};
+  };
+  experiment.set_batch([](std::size_t i) { return fmt::format("{}", i); });
+  OneRecord records(record);
+  evaluation::Executor executor(records, {});
+  const test::TestFolder out;
+  Console console(true);
+  forget_peak();
+  const double before = peak_memory();
+  const Evaluation evaluation = gather(experiment, {}, executor, out.path(), console);
+  write_evaluation(evaluation, {}, false, out.path(), console);
+  const double grown = peak_memory() - before;
+  EXPECT_EQ(evaluation.summary->overall()[0].size(), kRuns / 2 * kOutages);
+  EXPECT_EQ(out.lines("drift.csv").size(), 1 + kRuns * kOutages);
+  // Samples that are drawn, and what README says of a run and an outage, twice for temporaries.
+  EXPECT_LT(grown, 70e6 + 2 * kRuns * (40 + 32 * kOutages));
 }
 
 TEST(Cross, EveryMethodOnEveryLog) {

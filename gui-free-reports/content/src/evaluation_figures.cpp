@@ -200,9 +200,15 @@ Panel curve_panel(const MethodCurves& curves, const MethodOrder& order, const Co
   return panel;
 }
 
+/// Of very many outages an even choice is in the figures.
+std::string outages_text(const std::string& name, size_t count, size_t all) {
+  return count < all ? fmt::format("{} · {} of {} outages", name, count, all)
+                     : fmt::format("{} · {} outages", name, count);
+}
+
 std::string outages_text(const DriftCase& drift_case) {
   const size_t count = drift_case.methods.empty() ? 0 : drift_case.methods[0].outages.size();
-  return fmt::format("{} · {} outages", drift_case.name, count);
+  return outages_text(drift_case.name, count, drift_case.all);
 }
 
 }  // namespace
@@ -721,7 +727,7 @@ Figure drift_by_distance(const DistanceDrift& drift, const MethodOrder& order) {
   const size_t outages = drift.methods.empty() ? 0 : drift.methods[0].distance_km.size();
   Figure figure{"drift_by_distance_" + file_part(drift.name),
                 "Drift against distance from the start",
-                fmt::format("{} · {} outages", drift.name, outages),
+                outages_text(drift.name, outages, drift.all),
                 "The largest drift of each outage (faint) and its root mean square over "
                 "neighbouring outages with the 95 % bootstrap interval. A method that is right "
                 "everywhere on Earth drifts alike at every distance."};

@@ -11,7 +11,7 @@ namespace {
 const MethodOutages* outages_of(const std::vector<MethodOutages>& outages,
                                 const std::string& label) {
   const auto found = std::find_if(outages.begin(), outages.end(), [&](const MethodOutages& o) {
-    return o.method == label && !o.entries.empty();
+    return o.method == label && !o.empty();
   });
   return found == outages.end() ? nullptr : &*found;
 }
@@ -37,7 +37,7 @@ std::vector<AblationRow> ablation_rows(const std::vector<MethodOutages>& outages
   for (const AblationCase& what : cases) {
     const MethodOutages* of = outages_of(outages, what.label());
     if (!of) continue;
-    const std::vector<double> horizontal = of->horizontal_max(), vertical = of->vertical_max();
+    const std::vector<double>&horizontal = of->horizontal_max(), &vertical = of->vertical_max();
     AblationRow row{what, root_mean_square(horizontal), root_mean_square(vertical), {}, {}};
     const MethodOutages* whole = outages_of(outages, what.method);
     if (whole && !what.without.empty()) {

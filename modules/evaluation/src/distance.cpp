@@ -73,10 +73,8 @@ std::vector<double> chosen(const std::vector<double>& values, const DistanceBin&
 }
 
 std::vector<double> distances_km(const MethodOutages& outages) {
-  std::vector<double> distances;
-  for (const MethodOutages::Entry& entry : outages.entries) {
-    distances.push_back(entry.drift->distance_m * 1e-3);
-  }
+  std::vector<double> distances = outages.distance_m();
+  for (double& distance : distances) distance *= 1e-3;
   return distances;
 }
 

@@ -22,11 +22,12 @@ std::string markdown_row(const std::vector<std::string>& cells) {
   return row + "\n";
 }
 
-/// Different values of a member, in order of appearance.
-std::vector<std::string> distinct(const std::vector<MethodDrifts>& drifts,
-                                  std::string MethodDrifts::*member) {
+/// Different values of a member of those with outages, in order of appearance.
+std::vector<std::string> distinct(const std::vector<MethodOutages>& drifts,
+                                  std::string MethodOutages::*member) {
   std::vector<std::string> names;
-  for (const MethodDrifts& d : drifts) {
+  for (const MethodOutages& d : drifts) {
+    if (d.empty()) continue;
     if (std::find(names.begin(), names.end(), d.*member) == names.end()) {
       names.push_back(d.*member);
     }
@@ -34,10 +35,10 @@ std::vector<std::string> distinct(const std::vector<MethodDrifts>& drifts,
   return names;
 }
 
-const MethodDrifts* find(const std::vector<MethodDrifts>& drifts, const std::string& imu,
-                         const std::string& method) {
-  const auto found = std::find_if(drifts.begin(), drifts.end(), [&](const MethodDrifts& d) {
-    return d.imu == imu && d.method == method && !d.horizontal_max.empty();
+const MethodOutages* find(const std::vector<MethodOutages>& drifts, const std::string& imu,
+                          const std::string& method) {
+  const auto found = std::find_if(drifts.begin(), drifts.end(), [&](const MethodOutages& d) {
+    return d.group == imu && d.method == method && !d.empty();
   });
   return found == drifts.end() ? nullptr : &*found;
 }
@@ -62,7 +63,7 @@ std::string hundredths(double value) {
 }
 
 /// Difference, percentage and its interval, a column an IMU.
-std::vector<std::vector<std::string>> difference_rows(const std::vector<MethodDrifts>& drifts,
+std::vector<std::vector<std::string>> difference_rows(const std::vector<MethodOutages>& drifts,
                                                       const std::vector<std::string>& imus,
                                                       const std::string& base,
                                                       const std::string& other) {
@@ -70,13 +71,13 @@ std::vector<std::vector<std::string>> difference_rows(const std::vector<MethodDr
   std::vector<std::vector<std::string>> rows{
       {name + " (m)"}, {name + " (%)"}, {"95 % interval (%)"}};
   for (const std::string& imu : imus) {
-    const MethodDrifts* a = find(drifts, imu, base);
-    const MethodDrifts* b = find(drifts, imu, other);
+    const MethodOutages* a = find(drifts, imu, base);
+    const MethodOutages* b = find(drifts, imu, other);
     if (!a || !b) {
       for (std::vector<std::string>& row : rows) row.push_back("-");
       continue;
     }
-    const PairedComparison c = compare_paired(a->horizontal_max, b->horizontal_max);
+    const PairedComparison c = compare_paired(a->horizontal_max(), b->horizontal_max());
     rows[0].push_back(hundredths(c.rms_difference.value));
     rows[1].push_back(hundredths(100 * c.relative.value));
     rows[2].push_back(fmt::format("[{}, {}]", hundredths(100 * c.relative.low),
@@ -175,30 +176,32 @@ std::vector<std::string> text_lines(const std::string& text) {
   return lines;
 }
 
-TextTable drift_rms_table(const std::vector<MethodDrifts>& drifts, const std::string& imu_header) {
-  const std::vector<std::string> methods = distinct(drifts, &MethodDrifts::method);
-  TextTable table{"RMSEs of horizontal and vertical drifts in meters", {imu_header}, {}};
+TextTable drift_rms_table(const std::vector<MethodOutages>& drifts,
+                          const std::string& group_header) {
+  const std::vector<std::string> methods = distinct(drifts, &MethodOutages::method);
+  TextTable table{"RMSEs of horizontal and vertical drifts in meters", {group_header}, {}};
   for (const std::string& method : methods) {
     table.header.push_back(method + " Hor");
     table.header.push_back(method + " Ver");
   }
-  for (const std::string& imu : distinct(drifts, &MethodDrifts::imu)) {
+  for (const std::string& imu : distinct(drifts, &MethodOutages::group)) {
     std::vector<std::string> row{imu};
     for (const std::string& method : methods) {
-      const MethodDrifts* d = find(drifts, imu, method);
-      row.push_back(d ? fmt::format("{:.2f}", root_mean_square(d->horizontal_max)) : "-");
-      row.push_back(d ? fmt::format("{:.2f}", root_mean_square(d->vertical_max)) : "-");
+      const MethodOutages* d = find(drifts, imu, method);
+      row.push_back(d ? fmt::format("{:.2f}", root_mean_square(d->horizontal_max())) : "-");
+      row.push_back(d ? fmt::format("{:.2f}", root_mean_square(d->vertical_max())) : "-");
     }
     table.rows.push_back(row);
   }
   return table;
 }
 
-TextTable drift_difference_table(const std::vector<MethodDrifts>& drifts, const std::string& base) {
+TextTable drift_difference_table(const std::vector<MethodOutages>& drifts,
+                                 const std::string& base) {
   TextTable table{fmt::format("Horizontal-drift differences from {}", base), {"Difference"}, {}};
-  const std::vector<std::string> imus = distinct(drifts, &MethodDrifts::imu);
+  const std::vector<std::string> imus = distinct(drifts, &MethodOutages::group);
   table.header.insert(table.header.end(), imus.begin(), imus.end());
-  for (const std::string& other : distinct(drifts, &MethodDrifts::method)) {
+  for (const std::string& other : distinct(drifts, &MethodOutages::method)) {
     if (other == base) continue;
     const std::vector<std::vector<std::string>> rows = difference_rows(drifts, imus, base, other);
     table.rows.insert(table.rows.end(), rows.begin(), rows.end());
@@ -206,17 +209,17 @@ TextTable drift_difference_table(const std::vector<MethodDrifts>& drifts, const 
   return table;
 }
 
-TextTable drift_statistics_table(const std::vector<MethodDrifts>& drifts,
-                                 const std::string& imu_header) {
+TextTable drift_statistics_table(const std::vector<MethodOutages>& drifts,
+                                 const std::string& group_header) {
   TextTable table{"Per-outage maximum drift in meters, with 95 % bootstrap intervals",
-                  {imu_header, "Method", "Direction", "Outages", "RMS", "Mean", "Median", "68 %",
+                  {group_header, "Method", "Direction", "Outages", "RMS", "Mean", "Median", "68 %",
                    "95 %", "Maximum"},
                   {}};
-  for (const MethodDrifts& d : drifts) {
-    if (d.horizontal_max.empty()) continue;
+  for (const MethodOutages& d : drifts) {
+    if (d.empty()) continue;
     for (const bool horizontal : {true, false}) {
-      const std::vector<double>& values = horizontal ? d.horizontal_max : d.vertical_max;
-      std::vector<std::string> row{d.imu, d.method, horizontal ? "horizontal" : "vertical",
+      const std::vector<double>& values = horizontal ? d.horizontal_max() : d.vertical_max();
+      std::vector<std::string> row{d.group, d.method, horizontal ? "horizontal" : "vertical",
                                    fmt::format("{}", values.size())};
       const std::vector<std::string> cells = statistics_cells(values);
       row.insert(row.end(), cells.begin(), cells.end());

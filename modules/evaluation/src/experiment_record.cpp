@@ -1,70 +1,19 @@
 #include "experiment_record.h"
 
-#include <type_traits>
 #include <utility>
 
-#include "foucault/store/bytes.h"
+#include "foucault/store/archive.h"
 
 namespace foucault::evaluation {
 namespace {
 
-/// Writes what it is shown. Reader has the same calls: one list of fields serves both.
-class Recorder {
- public:
-  void field(const int64_t& value) { writer_.put(value); }
-  void field(const double& value) { writer_.put(value); }
-  void field(const std::string& text) { writer_.put(std::string_view(text)); }
-  std::size_t size(std::size_t count) {
-    writer_.put(static_cast<uint64_t>(count));
-    return count;
-  }
-  const std::string& bytes() const { return writer_.bytes(); }
-
- private:
-  store::ByteWriter writer_;
-};
-
-class Player {
- public:
-  explicit Player(std::string_view bytes) : reader_(bytes) {}
-  void field(int64_t& value) { value = reader_.integer(); }
-  void field(double& value) { value = reader_.number(); }
-  void field(std::string& text) { text = reader_.text(); }
-  std::size_t size(std::size_t) { return reader_.count(); }
-  void finish() const { reader_.finish(); }
-
- private:
-  store::ByteReader reader_;
-};
-
-template <class Archive, class List, class Visit>
-void list(Archive& archive, List& values, Visit visit) {
-  const std::size_t count = archive.size(values.size());
-  if constexpr (std::is_const_v<List>) {
-    for (const auto& value : values) visit(value);
-  } else {
-    for (std::size_t i = 0; i < count; ++i) visit(values.emplace_back());
-  }
-}
-
-template <class Archive, class Optional, class Visit>
-void optional(Archive& archive, Optional& value, Visit visit) {
-  const bool is_there = archive.size(value ? 1 : 0) != 0;
-  if (!is_there) return;
-  if constexpr (!std::is_const_v<Optional>) value.emplace();
-  visit(*value);
-}
+using store::integral;
+using store::list;
+using store::optional;
 
 template <class Archive, class Vector>
 void vector3(Archive& archive, Vector& v) {
   for (Eigen::Index i = 0; i < 3; ++i) archive.field(v[i]);
-}
-
-template <class Archive, class Enum>
-void enumerator(Archive& archive, Enum& value) {
-  auto number = static_cast<int64_t>(value);
-  archive.field(number);
-  if constexpr (!std::is_const_v<Enum>) value = static_cast<Enum>(number);
 }
 
 template <class Archive, class Value>
@@ -117,14 +66,14 @@ template <class Archive, class Notices>
 void notices(Archive& archive, Notices& all) {
   list(archive, all, [&](auto& notice) {
     archive.field(notice.t_ns);
-    enumerator(archive, notice.kind);
+    integral(archive, notice.kind);
     archive.field(notice.text);
   });
 }
 
 template <class Archive, class Result>
 void fields(Archive& archive, Result& result) {
-  enumerator(archive, result.run.truth);
+  integral(archive, result.run.truth);
   list(archive, result.run.drifts, [&](auto& d) { drift(archive, d); });
   list(archive, result.run.withheld, [&](auto& o) { outage(archive, o); });
   archive.field(result.run.scheduled);
@@ -142,7 +91,7 @@ std::string prefix_of(const ExperimentResult& result) { return result.recording 
 }  // namespace
 
 std::string content_of(const ExperimentResult& result) {
-  Recorder recorder;
+  store::Recorder recorder;
   const std::string prefix = prefix_of(result);
   const bool is_named = result.failure.compare(0, prefix.size(), prefix) == 0;
   recorder.size(is_named ? 1 : 0);
@@ -151,14 +100,15 @@ std::string content_of(const ExperimentResult& result) {
   return recorder.bytes();
 }
 
-ExperimentResult with_content(ExperimentResult named, std::string_view content) {
-  Player player(content);
+ExperimentResult result_with(const RunName& name, std::string_view content) {
+  ExperimentResult result{name, {}, {}, {}, {}, {}};
+  store::Player player(content);
   const bool is_named = player.size(0) != 0;
-  player.field(named.failure);
-  if (is_named) named.failure = prefix_of(named) + named.failure;
-  fields(player, named);
+  player.field(result.failure);
+  if (is_named) result.failure = prefix_of(result) + result.failure;
+  fields(player, result);
   player.finish();
-  return named;
+  return result;
 }
 
 }  // namespace foucault::evaluation

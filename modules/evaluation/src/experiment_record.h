@@ -11,7 +11,7 @@ namespace foucault::evaluation {
 /// processor. Numbers come back without loss.
 std::string content_of(const ExperimentResult& result);
 
-/// `named`: with the names of the run. Throws store::BytesError.
-ExperimentResult with_content(ExperimentResult named, std::string_view content);
+/// Throws store::BytesError.
+ExperimentResult result_with(const RunName& name, std::string_view content);
 
 }  // namespace foucault::evaluation

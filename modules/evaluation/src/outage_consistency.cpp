@@ -4,48 +4,24 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
-#include "foucault/core/time.h"
 #include "foucault/evaluation/statistics.h"
 
 namespace foucault::evaluation {
 namespace {
 
-/// A time within an outage, since its beginning [s].
-using TimeOf = std::function<double(const Outage&)>;
-
-double middle_of(const Outage& outage) {
-  return seconds_between(outage.begin_ns, outage.end_ns) / 2;
+PooledSquares pooled(const Sum& squares, int dof) {
+  if (squares.count == 0) return {};
+  const Band band = mean_nees_band(dof, static_cast<double>(squares.count));
+  return {squares.count, squares.mean(), {band.low / dof, band.high / dof}};
 }
 
-PooledSquares pooled(const std::vector<const DriftSample*>& samples,
-                     double NormalizedSquares::*component, int dof) {
-  std::vector<double> squares;
-  for (const DriftSample* sample : samples) {
-    const double square = sample->normalized.*component;
-    if (!std::isnan(square)) squares.push_back(square);
-  }
-  if (squares.empty()) return {};
-  const Band band = mean_nees_band(dof, static_cast<double>(squares.size()));
-  return {static_cast<int64_t>(squares.size()), mean(squares), {band.low / dof, band.high / dof}};
-}
-
-std::optional<NormalizedDrift> normalized_drift(const MethodOutages& outages, const TimeOf& time) {
-  std::vector<const DriftSample*> samples;
-  double sum_s = 0;
-  for (const MethodOutages::Entry& entry : outages.entries) {
-    const double at_s = time(entry.drift->outage);
-    const DriftSample* sample = sample_near(entry.drift->samples, at_s);
-    if (!sample) continue;
-    samples.push_back(sample);
-    sum_s += at_s;
-  }
+std::optional<NormalizedDrift> normalized_drift(const MethodOutages::AtTime& time) {
+  if (time.horizontal.count + time.vertical.count == 0) return std::nullopt;
   NormalizedDrift drift;
-  drift.horizontal = pooled(samples, &NormalizedSquares::horizontal, 2);
-  drift.vertical = pooled(samples, &NormalizedSquares::vertical, 1);
-  if (drift.horizontal.outages + drift.vertical.outages == 0) return std::nullopt;
-  drift.after_s = sum_s / static_cast<double>(samples.size());
+  drift.horizontal = pooled(time.horizontal, 2);
+  drift.vertical = pooled(time.vertical, 1);
+  drift.after_s = time.after_s.mean();
   return drift;
 }
 
@@ -78,21 +54,14 @@ std::string seconds_or_dash(const std::optional<double>& seconds) {
 
 }  // namespace
 
-const std::vector<double>& normalized_marks_s() {
-  static const std::vector<double> marks{5, 15, 30, 60};
-  return marks;
-}
-
 std::vector<MethodNormalizedDrifts> normalized_drifts(const std::vector<MethodOutages>& outages) {
   std::vector<MethodNormalizedDrifts> methods;
   for (const MethodOutages& o : outages) {
     MethodNormalizedDrifts method{o.group, o.method, {}};
-    for (const double mark_s : normalized_marks_s()) {
-      const auto drift = normalized_drift(o, [mark_s](const Outage&) { return mark_s; });
-      if (drift) method.times.push_back(*drift);
-    }
-    if (std::optional<NormalizedDrift> drift = normalized_drift(o, middle_of)) {
-      drift->middle = true;
+    for (const MethodOutages::AtTime& time : o.normalized) {
+      std::optional<NormalizedDrift> drift = normalized_drift(time);
+      if (!drift) continue;
+      drift->middle = &time == &o.normalized.back();
       method.times.push_back(*drift);
     }
     if (!method.times.empty()) methods.push_back(std::move(method));
@@ -136,25 +105,17 @@ TextTable normalized_drift_table(const std::vector<MethodNormalizedDrifts>& meth
 std::vector<PooledReturns> pooled_returns(const std::vector<MethodOutages>& outages) {
   std::vector<PooledReturns> all;
   for (const MethodOutages& o : outages) {
+    if (o.returned_m2.count == 0) continue;
     PooledReturns returns;
     returns.group = o.group;
     returns.method = o.method;
-    std::vector<double> rms;
-    std::vector<double> settled_s;
-    for (const MethodOutages::Entry& entry : o.entries) {
-      const std::optional<ReturnError>& error = entry.drift->after_return;
-      if (!error) continue;
-      rms.push_back(error->rms);
-      returns.max_horizontal = std::max(returns.max_horizontal, error->maximum);
-      if (error->settled_s) settled_s.push_back(*error->settled_s);
-    }
-    if (rms.empty()) continue;
-    returns.outages = static_cast<int64_t>(rms.size());
-    returns.rms_horizontal = root_mean_square(rms);
-    returns.never_settled = static_cast<int64_t>(rms.size() - settled_s.size());
-    if (!settled_s.empty()) {
-      returns.median_settled_s = quantile(settled_s, 0.5);
-      returns.max_settled_s = quantile(settled_s, 1);
+    returns.outages = o.returned_m2.count;
+    returns.rms_horizontal = std::sqrt(o.returned_m2.mean());
+    returns.max_horizontal = o.largest_return_m;
+    returns.never_settled = returns.outages - static_cast<int64_t>(o.settled_s().size());
+    if (!o.settled_s().empty()) {
+      returns.median_settled_s = quantile(o.settled_s(), 0.5);
+      returns.max_settled_s = quantile(o.settled_s(), 1);
     }
     all.push_back(returns);
   }

@@ -64,6 +64,97 @@ double difference_p_value(const std::vector<double>& base, const std::vector<dou
   return static_cast<double>(at_least) / (options.resamples + 1);
 }
 
+/// Of a standard normal: holds it with this probability, to both sides.
+double normal_bound(double confidence) { return std::sqrt(chi_square_quantile(confidence, 1)); }
+
+/// The normal limit of the bootstrap of a statistic; `influence(i)` is what value i changes it by,
+/// times the number of values. No interval where that is not finite.
+template <class Influence>
+Estimate normal_interval(double value, std::size_t count, double confidence, Influence influence) {
+  double square = 0;
+  for (std::size_t i = 0; i < count; ++i) square += std::pow(influence(i), 2);
+  const double half = normal_bound(confidence) * std::sqrt(square) / static_cast<double>(count);
+  if (!std::isfinite(half)) return {value, value, value};
+  return {value, value - half, value + half};
+}
+
+Estimate rms_limit(const std::vector<double>& values, double confidence) {
+  const double rms = root_mean_square(values);
+  if (rms == 0) return {};
+  return normal_interval(rms, values.size(), confidence, [&](std::size_t i) {
+    return (values[i] * values[i] - rms * rms) / (2 * rms);
+  });
+}
+
+/// Type 7, as quantile().
+double at_position(const std::vector<double>& sorted, double position) {
+  const double last = static_cast<double>(sorted.size() - 1);
+  position = std::clamp(position, 0.0, last);
+  const auto index = static_cast<std::size_t>(position);
+  const double low = sorted[index], high = sorted[std::min(index + 1, sorted.size() - 1)];
+  if (high == low) return low;  // infinities, too
+  return low + (position - static_cast<double>(index)) * (high - low);
+}
+
+/// How many values of a resample lie below one of them is binomial.
+Estimate quantile_limit(const std::vector<double>& sorted, double p, double confidence) {
+  const auto count = static_cast<double>(sorted.size());
+  const double position = p * (count - 1);
+  const double half = normal_bound(confidence) * std::sqrt(count * p * (1 - p));
+  return {at_position(sorted, position), at_position(sorted, position - half),
+          at_position(sorted, position + half)};
+}
+
+/// A resample lacks the k largest values with exp(-k).
+Estimate maximum_limit(const std::vector<double>& sorted, double confidence) {
+  const double lacking = std::floor(-std::log((1 - confidence) / 2));
+  const double largest = sorted.back();
+  return {largest, at_position(sorted, static_cast<double>(sorted.size() - 1) - lacking), largest};
+}
+
+Summary limits(const std::vector<double>& values, double confidence) {
+  std::vector<double> sorted = values;
+  std::sort(sorted.begin(), sorted.end());
+  Summary s;
+  s.count = static_cast<int64_t>(values.size());
+  const double centre = evaluation::mean(values);
+  s.rms = rms_limit(values, confidence);
+  s.mean = normal_interval(centre, values.size(), confidence,
+                           [&](std::size_t i) { return values[i] - centre; });
+  s.median = quantile_limit(sorted, 0.5, confidence);
+  s.p68 = quantile_limit(sorted, 0.68, confidence);
+  s.p95 = quantile_limit(sorted, 0.95, confidence);
+  s.max = maximum_limit(sorted, confidence);
+  return s;
+}
+
+/// If names are swapped, the difference of the sums of squares is normal; that of the RMS grows
+/// with it, since their sum stays.
+double swap_limit(const std::vector<double>& base, const std::vector<double>& other) {
+  double sum = 0, square = 0;
+  for (std::size_t i = 0; i < base.size(); ++i) {
+    const double difference = other[i] * other[i] - base[i] * base[i];
+    sum += difference;
+    square += difference * difference;
+  }
+  if (square == 0 || !std::isfinite(square)) return 1;
+  return std::erfc(std::abs(sum) / std::sqrt(2 * square));
+}
+
+/// The differences of `c`, whose RMS are there.
+void add_limits(const std::vector<double>& base, const std::vector<double>& other,
+                double confidence, PairedComparison& c) {
+  const double a = c.base_rms, b = c.other_rms;
+  const auto of_base = [&](std::size_t i) { return (base[i] * base[i] - a * a) / (2 * a); };
+  const auto of_other = [&](std::size_t i) { return (other[i] * other[i] - b * b) / (2 * b); };
+  c.rms_difference = normal_interval(b - a, base.size(), confidence,
+                                     [&](std::size_t i) { return of_other(i) - of_base(i); });
+  c.relative = normal_interval((b - a) / a, base.size(), confidence, [&](std::size_t i) {
+    return (of_other(i) - b / a * of_base(i)) / a;
+  });
+  c.p_value = swap_limit(base, other);
+}
+
 double share_larger(const std::vector<double>& base, const std::vector<double>& other) {
   double larger = 0;
   for (std::size_t i = 0; i < base.size(); ++i) {
@@ -148,6 +239,7 @@ double quantile(std::vector<double> values, double p) {
 
 Summary summarize(const std::vector<double>& values, const BootstrapOptions& options) {
   if (values.empty()) throw std::invalid_argument("there are no values to summarize");
+  if (values.size() > options.most) return limits(values, options.confidence);
   const auto of = [&](auto statistic) {
     return bootstrap(values.size(), options,
                      [&](const Indices& indices) { return statistic(chosen(values, indices)); });
@@ -178,9 +270,13 @@ PairedComparison compare_paired(const std::vector<double>& base, const std::vect
   c.count = static_cast<int64_t>(base.size());
   c.base_rms = root_mean_square(base);
   c.other_rms = root_mean_square(other);
+  c.share_larger = share_larger(base, other);
+  if (base.size() > options.most) {
+    add_limits(base, other, options.confidence, c);
+    return c;
+  }
   c.rms_difference = bootstrap(base.size(), options, difference);
   c.relative = bootstrap(base.size(), options, relative);
-  c.share_larger = share_larger(base, other);
   c.p_value = difference_p_value(base, other, options);
   return c;
 }

@@ -9,18 +9,13 @@ namespace {
 using testing::ElementsAre;
 
 /// Drifts of three outages, each with half of it downward.
-MethodOutages outages(const std::string& method, std::vector<OutageDrift>& drifts, double scale) {
-  MethodOutages outages{"trip", method, {}};
-  for (int i = 0; i < 3; ++i) drifts[i].maximum = {scale * (i + 1), scale * (i + 1) / 2};
-  for (const OutageDrift& drift : drifts) outages.entries.push_back({nullptr, &drift});
-  return outages;
+MethodOutages outages(const std::string& method, double scale) {
+  return {"trip", method, {scale, 2 * scale, 3 * scale}, {scale / 2, scale, 1.5 * scale}};
 }
 
 class AblationTest : public testing::Test {
  protected:
-  std::vector<OutageDrift> whole_{3}, halved_{3};
-  std::vector<MethodOutages> outages_{outages("ekf", whole_, 1),
-                                      outages("ekf without wheel_speed", halved_, 2)};
+  std::vector<MethodOutages> outages_{outages("ekf", 1), outages("ekf without wheel_speed", 2)};
 };
 
 TEST_F(AblationTest, DifferencesAreFromTheSameMethodAsItIs) {

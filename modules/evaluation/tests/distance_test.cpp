@@ -7,6 +7,8 @@
 #include <limits>
 #include <numeric>
 
+#include "foucault/evaluation/outage_join.h"
+
 namespace foucault::evaluation {
 namespace {
 

@@ -8,7 +8,7 @@ namespace {
 
 using testing::ElementsAre;
 
-std::vector<MethodDrifts> some_drifts() {
+std::vector<MethodOutages> some_drifts() {
   return {{"ADIS16465", "ekf", {3, 4}, {1, 1}},
           {"ADIS16465", "rough", {6, 8}, {2, 2}},
           {"ICM20602", "ekf", {10, 10}, {5, 5}}};

@@ -6,6 +6,7 @@
 #include <random>
 
 #include "foucault/core/time.h"
+#include "foucault/evaluation/outage_join.h"
 
 namespace foucault::evaluation {
 namespace {

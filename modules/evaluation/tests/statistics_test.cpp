@@ -52,6 +52,69 @@ TEST(Summary, IsTheSameEveryTime) {
   EXPECT_NE(summarize(values).rms.low, summarize(values, other).rms.low);
 }
 
+/// Of many values the intervals are those that the bootstrap tends to.
+void expect_close(const Estimate& limit, const Estimate& bootstrap) {
+  const double width = bootstrap.high - bootstrap.low;
+  EXPECT_DOUBLE_EQ(limit.value, bootstrap.value);
+  EXPECT_NEAR(limit.low, bootstrap.low, 0.1 * width);
+  EXPECT_NEAR(limit.high, bootstrap.high, 0.1 * width);
+}
+
+struct Pairs {
+  std::vector<double> base, other;
+};
+
+/// Drifts of two methods that have most of them in common.
+Pairs pairs(int count) {
+  std::mt19937 rng{42};
+  std::exponential_distribution<double> drift(0.5);
+  Pairs pairs;
+  for (int i = 0; i < count; ++i) {
+    const double common = drift(rng);
+    pairs.base.push_back(common + 0.3 * drift(rng));
+    pairs.other.push_back(common + 0.31 * drift(rng));
+  }
+  return pairs;
+}
+
+TEST(Summary, OfManyValuesIsTheLimit) {
+  const std::vector<double> values = pairs(4000).base;
+  BootstrapOptions resampling;
+  resampling.most = values.size();
+  const Summary limit = summarize(values), bootstrap = summarize(values, resampling);
+  EXPECT_EQ(limit.count, 4000);
+  for (const auto member :
+       {&Summary::rms, &Summary::mean, &Summary::median, &Summary::p68, &Summary::p95}) {
+    expect_close(limit.*member, bootstrap.*member);
+  }
+  EXPECT_EQ(limit.max.value, bootstrap.max.value);
+  EXPECT_EQ(limit.max.high, bootstrap.max.high);
+  EXPECT_EQ(limit.max.low, bootstrap.max.low);
+}
+
+TEST(Summary, OfManyValuesWithAnInfiniteOne) {
+  std::vector<double> values = pairs(4000).base;
+  values[7] = std::numeric_limits<double>::infinity();
+  const Summary s = summarize(values);
+  EXPECT_EQ(s.rms.low, values[7]);
+  EXPECT_EQ(s.max.high, values[7]);
+  EXPECT_TRUE(std::isfinite(s.p95.high));
+}
+
+TEST(PairedComparison, OfManyValuesIsTheLimit) {
+  const auto [base, other] = pairs(4000);
+  BootstrapOptions resampling;
+  resampling.most = base.size();
+  const PairedComparison limit = compare_paired(base, other);
+  const PairedComparison bootstrap = compare_paired(base, other, resampling);
+  expect_close(limit.rms_difference, bootstrap.rms_difference);
+  expect_close(limit.relative, bootstrap.relative);
+  EXPECT_EQ(limit.share_larger, bootstrap.share_larger);
+  EXPECT_GT(bootstrap.p_value, 0.01) << "else there is nothing to compare";
+  EXPECT_NEAR(limit.p_value, bootstrap.p_value, 0.03);  // 2.7 sigmas of 2000 draws at most
+  EXPECT_EQ(compare_paired(base, base).p_value, 1);
+}
+
 TEST(Summary, OfNothingThrows) { EXPECT_THROW(summarize({}), std::invalid_argument); }
 
 TEST(Summary, IntervalOfTheMeanCoversIt) {

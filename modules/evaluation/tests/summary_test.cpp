@@ -3,6 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <string>
+
 #include "foucault/core/error.h"
 #include "support/drifting_experiment.h"
 
@@ -19,9 +22,9 @@ TEST(EvaluationSummary, JoinsByRecording) {
   EXPECT_THAT(summary.methods(), ElementsAre("good", "bad"));
   EXPECT_EQ(summary.row_header(), "Recording");
   ASSERT_EQ(summary.overall().size(), 2u);
-  EXPECT_EQ(summary.overall()[0].entries.size(), 12u);
+  EXPECT_EQ(summary.overall()[0].size(), 12u);
   EXPECT_EQ(summary.rows().size(), 6u) << "two recordings and all, two methods";
-  EXPECT_EQ(&summary.distance_groups(), &summary.overall());
+  EXPECT_EQ(&summary.cases(), &summary.overall());
   EXPECT_TRUE(summary.distances().empty());
   EXPECT_EQ(summary.rms_table().rows.size(), 3u);
   EXPECT_EQ(summary.difference_table().header.size(), 4u);
@@ -34,9 +37,9 @@ TEST(EvaluationSummary, JoinsByRecording) {
 TEST(EvaluationSummary, JoinsByImuIfThereAreSeveral) {
   std::vector<ExperimentResult> of_two = results();
   for (ExperimentResult& result : of_two) result.imu = result.recording;
-  const EvaluationSummary summary(std::move(of_two));
+  const EvaluationSummary summary(of_two);
   EXPECT_EQ(summary.row_header(), "IMU");
-  EXPECT_EQ(&summary.distance_groups(), &summary.rows());
+  EXPECT_EQ(&summary.cases(), &summary.rows());
 }
 
 TEST(EvaluationSummary, SaysWhatTheTablesRestOn) {
@@ -56,10 +59,38 @@ TEST(EvaluationSummary, SaysWhatTheTablesRestOn) {
   EXPECT_LT(evaluation_lines(single).size(), lines.size()) << "no differences";
 }
 
+/// In whatever order they come, and one by one as all at once.
+TEST(EvaluationSummary, DoesNotDependOnTheOrderOfMethods) {
+  std::vector<ExperimentResult> by_method = results();
+  std::stable_sort(by_method.begin(), by_method.end(), [](const auto& a, const auto& b) {
+    return a.method == "good" && b.method != "good";
+  });
+  const EvaluationSummary one(results()), other(by_method);
+  EXPECT_EQ(to_csv(one.statistics_table()), to_csv(other.statistics_table()));
+  EXPECT_EQ(to_csv(one.normalized_table()), to_csv(other.normalized_table()));
+  EXPECT_EQ(one.shown().size(), 4u) << "the first shift of both recordings";
+  EXPECT_EQ(one.runs().size(), 8u);
+}
+
+/// A table of so many rows nobody reads: drift.csv has them all.
+TEST(EvaluationSummary, VeryManyRecordingsAreOneRow) {
+  std::vector<ExperimentResult> of_many;
+  const ExperimentResult one = results().front();
+  for (std::size_t i = 0; i <= EvaluationSummary::kMostRows; ++i) {
+    of_many.push_back(one);
+    of_many.back().recording = std::to_string(i);
+  }
+  const EvaluationSummary summary(of_many);
+  ASSERT_EQ(summary.rows().size(), 1u);
+  EXPECT_EQ(summary.rows()[0].group, "all recordings");
+  EXPECT_EQ(summary.rows()[0].size(), 3 * of_many.size());
+  EXPECT_EQ(summary.recordings(), of_many.size());
+}
+
 TEST(EvaluationSummary, MethodsWithoutACommonOutage) {
   const auto refusal = [](std::vector<ExperimentResult> of) -> std::string {
     try {
-      const EvaluationSummary summary(std::move(of));
+      const EvaluationSummary summary(of);
     } catch (const DataError& error) {
       return error.what();
     }

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <string_view>
 
-#include "foucault/core/time.h"
+#include "foucault/evaluation/csv_line.h"
 #include "foucault/export/json_object.h"
 #include "foucault/export/text_file.h"
 
@@ -28,39 +30,37 @@ Json statistics_json(const std::vector<double>& values) {
 
 /// RMS over the outages at each mark that all of them reach.
 Json mark_json(const evaluation::MethodOutages& outages,
-               double evaluation::DriftValue::*component) {
+               evaluation::Sum evaluation::MethodOutages::SquaredDrift::*component) {
   Json json = Json::object();
   const std::vector<double>& marks_s = evaluation::default_drift_marks_s();
-  for (std::size_t i = 0; i < marks_s.size(); ++i) {
-    std::vector<double> values;
-    for (const evaluation::MethodOutages::Entry& entry : outages.entries) {
-      if (entry.drift->at_marks[i]) values.push_back((*entry.drift->at_marks[i]).*component);
-    }
-    if (values.size() != outages.entries.size()) continue;
-    json[fmt::format("{}", marks_s[i])] = evaluation::root_mean_square(values);
+  for (std::size_t i = 0; i < std::min(marks_s.size(), outages.at_marks.size()); ++i) {
+    const evaluation::Sum& squares = outages.at_marks[i].*component;
+    if (squares.count != static_cast<int64_t>(outages.size())) continue;
+    json[fmt::format("{}", marks_s[i])] = std::sqrt(squares.mean());
   }
   return json;
 }
 
 Json method_json(const evaluation::MethodOutages& outages) {
-  const std::vector<double> horizontal = outages.horizontal_max();
-  const std::vector<double> vertical = outages.vertical_max();
+  using Squares = evaluation::MethodOutages::SquaredDrift;
+  const std::vector<double>& horizontal = outages.horizontal_max();
+  const std::vector<double>& vertical = outages.vertical_max();
   return Object()
-      .with("outages", outages.entries.size())
+      .with("outages", outages.size())
       .with("horizontal_rmse_m", evaluation::root_mean_square(horizontal))
       .with("vertical_rmse_m", evaluation::root_mean_square(vertical))
       .with("cpu_s", outages.cpu_s)
       .with("missing_outages", outages.missing)
       .with("horizontal_m", statistics_json(horizontal))
       .with("vertical_m", statistics_json(vertical))
-      .with("horizontal_rms_m_after_s", mark_json(outages, &evaluation::DriftValue::horizontal))
-      .with("vertical_rms_m_after_s", mark_json(outages, &evaluation::DriftValue::vertical));
+      .with("horizontal_rms_m_after_s", mark_json(outages, &Squares::horizontal))
+      .with("vertical_rms_m_after_s", mark_json(outages, &Squares::vertical));
 }
 
 Json methods_json(const std::vector<evaluation::MethodOutages>& outages, const std::string& group) {
   Json json = Json::object();
   for (const evaluation::MethodOutages& o : outages) {
-    if (o.group == group && !o.entries.empty()) json[o.method] = method_json(o);
+    if (o.group == group && !o.empty()) json[o.method] = method_json(o);
   }
   return json;
 }
@@ -83,13 +83,13 @@ Json comparisons_json(const std::vector<evaluation::MethodOutages>& outages) {
     const auto base =
         std::find_if(outages.begin(), outages.end(),
                      [&](const evaluation::MethodOutages& o) { return o.group == other.group; });
-    if (&*base == &other || other.entries.empty()) continue;
+    if (&*base == &other || other.empty()) continue;
     json.push_back(
         Object()
             .with("group", other.group)
             .with("base", base->method)
             .with("other", other.method)
-            .with("outages", other.entries.size())
+            .with("outages", other.size())
             .with("horizontal", paired_json(base->horizontal_max(), other.horizontal_max()))
             .with("vertical", paired_json(base->vertical_max(), other.vertical_max())));
   }
@@ -177,21 +177,17 @@ const char* truth_name(evaluation::DriftTruth truth) {
   return truth == evaluation::DriftTruth::reference ? "reference" : "withheld_fixes";
 }
 
-Json runs_json(const std::vector<evaluation::ExperimentResult>& results) {
-  Json json = Json::array();
-  for (const evaluation::ExperimentResult& r : results) {
-    json.push_back(Object()
-                       .with("recording", r.recording)
-                       .with("imu", r.imu)
-                       .with("method", r.method)
-                       .with("shift_s", r.shift_s)
-                       .with("truth", truth_name(r.run.truth))
-                       .with("fixes_span_s", seconds_between(r.run.first_fix_ns, r.run.last_fix_ns))
-                       .with("outages", r.run.drifts.size())
-                       .with("scheduled_outages", r.run.scheduled)
-                       .with("cpu_s", r.run.cpu_s));
-  }
-  return json;
+Json run_json(const evaluation::RunName& name, const evaluation::RunFacts& run) {
+  return Object()
+      .with("recording", name.recording)
+      .with("imu", name.imu)
+      .with("method", name.method)
+      .with("shift_s", name.shift_s)
+      .with("truth", truth_name(run.truth))
+      .with("fixes_span_s", run.fixes_span_s)
+      .with("outages", run.outages)
+      .with("scheduled_outages", run.scheduled)
+      .with("cpu_s", run.cpu_s);
 }
 
 Json relative_json(const std::optional<evaluation::Estimate>& relative) {
@@ -212,8 +208,15 @@ Json ablation_json(const std::vector<evaluation::AblationRow>& rows) {
   return json;
 }
 
-std::string metrics_text(const evaluation::EvaluationSummary& summary, const Provenance& origin,
-                         const std::vector<evaluation::AblationRow>& ablation) {
+std::string text_of(const Json& json) {
+  return json.dump(2, ' ', false, Json::error_handler_t::replace);
+}
+
+/// Stands where the runs come, which may be a million: they are written one by one.
+constexpr const char* kRuns = "the runs";
+
+Json metrics_json(const evaluation::EvaluationSummary& summary, const Provenance& origin,
+                  const std::vector<evaluation::AblationRow>& ablation) {
   Json json;
   json["methods"] = methods_json(summary.overall(), summary.overall().front().group);
   Json rows = Json::object();
@@ -226,12 +229,33 @@ std::string metrics_text(const evaluation::EvaluationSummary& summary, const Pro
   json["distances"] = distances_json(summary.distances());
   json["normalized_drift"] = normalized_json(summary.normalized());
   json["after_return"] = returns_json(summary.returns());
-  json["runs"] = runs_json(summary.results());
+  json["runs"] = kRuns;
   json["interval"] = "95 % bootstrap over outages";
   json["command"] = origin.command_line;
   json["version"] = origin.version;
   json["config"] = origin.config;
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json;
+}
+
+void write_runs(const evaluation::EvaluationSummary& summary, TextFile& file) {
+  for (std::size_t i = 0; i < summary.runs().size(); ++i) {
+    file.write(i == 0 ? "[" : ",");
+    const std::string run = text_of(run_json(summary.names().at(i), summary.runs()[i]));
+    for (const std::string& line : evaluation::text_lines(run)) file.write("\n    " + line);
+  }
+  file.write("\n  ]");
+}
+
+void write_metrics(const Json& json, const evaluation::EvaluationSummary& summary,
+                   const std::filesystem::path& path) {
+  const std::string text = text_of(json) + "\n";
+  const std::string place = fmt::format("\n  \"runs\": \"{}\"", kRuns);
+  const std::size_t end = text.find(place) + place.size();
+  TextFile file(path);
+  file.write(std::string_view(text).substr(0, end - std::string_view(kRuns).size() - 2));
+  write_runs(summary, file);
+  file.write(std::string_view(text).substr(end));
+  file.close();
 }
 
 void write_table(const evaluation::TextTable& table, const std::filesystem::path& folder,
@@ -242,13 +266,23 @@ void write_table(const evaluation::TextTable& table, const std::filesystem::path
 
 }  // namespace
 
+DriftFile::DriftFile(const std::filesystem::path& path) : file_(path) {
+  file_.write(
+      evaluation::to_csv(evaluation::drift_record_table({}, evaluation::default_drift_marks_s())));
+}
+
+void DriftFile::add(const evaluation::ExperimentResult& result) {
+  const evaluation::TextTable table = evaluation::drift_record_table(
+      evaluation::drift_records(result), evaluation::default_drift_marks_s());
+  for (const std::vector<std::string>& row : table.rows) {
+    file_.write(evaluation::csv_line(row) + "\n");
+  }
+}
+
 void write_evaluation(const evaluation::EvaluationSummary& summary, const Provenance& origin,
                       const std::filesystem::path& folder,
                       const std::vector<evaluation::AblationRow>& ablation) {
-  const evaluation::TextTable drifts = evaluation::drift_record_table(
-      evaluation::drift_records(summary.results()), evaluation::default_drift_marks_s());
-  write_text_file(folder / "drift.csv", evaluation::to_csv(drifts));
-  write_text_file(folder / "metrics.json", metrics_text(summary, origin, ablation));
+  write_metrics(metrics_json(summary, origin, ablation), summary, folder / "metrics.json");
   if (!origin.config.empty()) write_text_file(folder / "config.yaml", origin.config);
   std::filesystem::create_directories(folder / "tables");
   write_table(summary.rms_table(), folder / "tables", "table_iii");

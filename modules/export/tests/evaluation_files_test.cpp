@@ -13,8 +13,12 @@ namespace {
 
 TEST(EvaluationFiles, HoldTheSummary) {
   const test::TestFolder folder;
-  const evaluation::EvaluationSummary summary(
-      evaluation::run_experiments(test::drifting_runs(), 2));
+  const std::vector<evaluation::ExperimentResult> results =
+      evaluation::run_experiments(test::drifting_runs(), 2);
+  DriftFile drifts(folder.path() / "drift.csv");
+  for (const evaluation::ExperimentResult& result : results) drifts.add(result);
+  drifts.close();
+  const evaluation::EvaluationSummary summary(results);
   write_evaluation(summary, {"foucault evaluate", "imu: {}\n", "1"}, folder.path());
 
   const auto json = nlohmann::json::parse(folder.text("metrics.json"));
@@ -45,7 +49,7 @@ TEST(EvaluationFiles, DistancesOfATripThatGoesFar) {
     double distance_m = 0;
     for (evaluation::OutageDrift& drift : result.run.drifts) drift.distance_m = distance_m += 20e3;
   }
-  const evaluation::EvaluationSummary summary(std::move(results));
+  const evaluation::EvaluationSummary summary(results);
   write_evaluation(summary, {"", "", "1"}, folder.path());
   const auto json = nlohmann::json::parse(folder.text("metrics.json"));
   EXPECT_EQ(json["imus"].size(), 2u);

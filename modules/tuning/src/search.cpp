@@ -87,19 +87,14 @@ class PointRuns {
   }
 
   /// The log is the name of the recording.
-  evaluation::ExperimentResult named(std::size_t index) const {
-    evaluation::ExperimentResult result;
-    result.recording = plan_.logs[index / plan_.shifts / points_.size()];
-    return result;
+  evaluation::RunName name(std::size_t index) const {
+    return {plan_.logs[index / plan_.shifts / points_.size()], "", method_, 0};
   }
 
-  /// Of every run.
-  std::vector<std::string> depends_on() const {
-    std::vector<std::string> texts;
-    for (std::size_t i = 0; i < plan_.logs.size() * points_.size(); ++i) {
-      for (evaluation::ExperimentRun& run : runs(i)) texts.push_back(std::move(run.depends_on));
-    }
-    return texts;
+  /// Asked in the order of runs; those of the shifts are made together.
+  std::string depends_on(std::size_t index) {
+    if (index % plan_.shifts == 0) last_ = runs(index / plan_.shifts);
+    return last_.at(index % plan_.shifts).depends_on;
   }
 
   /// Of a point, in the order of logs and shifts.
@@ -122,19 +117,19 @@ class PointRuns {
   const SearchPlan& plan_;
   const std::string& method_;
   const std::vector<GridPoint>& points_;
+  std::vector<evaluation::ExperimentRun> last_;
 };
 
 /// In the order of `points`.
 std::vector<PointScore> scores(const SearchPlan& plan, const std::string& method,
                                const std::vector<GridPoint>& points,
                                evaluation::Executor& executor) {
-  const PointRuns runs(plan, method, points);
-  const std::vector<std::string> texts = runs.depends_on();
+  PointRuns runs(plan, method, points);
   evaluation::Experiment experiment;
   experiment.size = runs.size();
   experiment.run = [&](std::size_t i) { return runs.run(i); };
-  experiment.named = [&](std::size_t i) { return runs.named(i); };
-  experiment.set_batch([&](std::size_t i) { return texts.at(i); });
+  experiment.name = [&](std::size_t i) { return runs.name(i); };
+  experiment.set_batch([&](std::size_t i) { return runs.depends_on(i); });
   executor.complete(experiment.batch, plan.progress_of(method));
   std::vector<PointScore> scores;
   for (std::size_t p = 0; p < points.size(); ++p) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -31,6 +32,7 @@ struct MethodCurves {
 struct DriftCase {
   std::string name;  ///< e.g. "ADIS16465"
   std::vector<MethodCurves> methods;
+  std::size_t all = 0;  ///< outages for which these stand, if they are not all
 };
 
 /// A number with its interval (bootstrap, 95 %).
@@ -103,6 +105,7 @@ struct DistanceDrift {
   };
   std::string name;  ///< of the case
   std::vector<Method> methods;
+  std::size_t all = 0;  ///< as in DriftCase; bins are of all
 };
 
 /// Errors in outages over their sigmas: mean squares per degree of freedom, 1 if the sigmas are

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "foucault/evaluation/drift_table.h"
-#include "foucault/evaluation/experiment.h"
+#include "foucault/evaluation/method_outages.h"
 #include "foucault/evaluation/statistics.h"
 
 /// Drift against the distance from the start of the recording. What a method takes as constant in a

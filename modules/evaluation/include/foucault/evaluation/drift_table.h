@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "foucault/evaluation/drift.h"
+#include "foucault/evaluation/method_outages.h"
 #include "foucault/evaluation/statistics.h"
 
 /// The paper's tables, and drifts as text.
@@ -28,30 +29,22 @@ std::string to_plain_text(const TextTable& table);
 /// A text without its line ends.
 std::vector<std::string> text_lines(const std::string& text);
 
-/// All outages of one IMU by one method, over all its recordings and shifts; the same outages in
-/// the same order for every method of an IMU.
-struct MethodDrifts {
-  std::string imu;
-  std::string method;
-  std::vector<double> horizontal_max;  ///< per outage [m]
-  std::vector<double> vertical_max;
-};
-
 /// Table III, "RMSEs of horizontal and vertical drifts in meters": a row an IMU, two columns a
 /// method; RMS of the per-outage maximum. Rows and columns in order of appearance; "-" where
-/// nothing was run. `imu_header` heads the column of the names, which need not be IMUs.
-TextTable drift_rms_table(const std::vector<MethodDrifts>& drifts,
-                          const std::string& imu_header = "IMU");
+/// nothing was run. `group_header` heads the column of the groups.
+TextTable drift_rms_table(const std::vector<MethodOutages>& outages,
+                          const std::string& group_header = "IMU");
 
-/// Table IV, "Horizontal-drift differences from `base`": a column an IMU, and for each other method
-/// the rows difference [m], percentage (other - base) / base, and the bootstrap interval of the
-/// percentage. "-" where one of both was not run.
-TextTable drift_difference_table(const std::vector<MethodDrifts>& drifts, const std::string& base);
+/// Table IV, "Horizontal-drift differences from `base`": a column a group, and for each other
+/// method the rows difference [m], percentage (other - base) / base, and the bootstrap interval of
+/// the percentage. "-" where one of both was not run.
+TextTable drift_difference_table(const std::vector<MethodOutages>& outages,
+                                 const std::string& base);
 
-/// Statistics over outages: a row an IMU and method; RMS, mean, median, 68 %, 95 %, maximum, each
+/// Statistics over outages: a row a group and method; RMS, mean, median, 68 %, 95 %, maximum, each
 /// with its interval.
-TextTable drift_statistics_table(const std::vector<MethodDrifts>& drifts,
-                                 const std::string& imu_header = "IMU");
+TextTable drift_statistics_table(const std::vector<MethodOutages>& outages,
+                                 const std::string& group_header = "IMU");
 
 /// One outage by one method, for drift.csv.
 struct DriftRecord {

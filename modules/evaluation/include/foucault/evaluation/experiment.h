@@ -47,11 +47,20 @@ class EstimatorFailure : public DataError {
   using DataError::DataError;
 };
 
-struct ExperimentResult {
+/// What tells a run from others.
+struct RunName {
   std::string recording;
   std::string imu;
   std::string method;
   double shift_s = 0;
+
+  /// Whether both have the same outages.
+  bool is_compared_with(const RunName& other) const {
+    return recording == other.recording && imu == other.imu && shift_s == other.shift_s;
+  }
+};
+
+struct ExperimentResult : RunName {
   OutageRunResult run;
   std::vector<TrackPoint> track;       ///< errors against the truth of `run`
   std::vector<state::Notice> notices;  ///< the first ones
@@ -68,9 +77,9 @@ ExperimentResult run_experiment(const ExperimentRun& run,
 /// Many runs, made when they are needed: they may be a million.
 struct Experiment {
   std::size_t size = 0;
-  std::function<ExperimentRun(std::size_t index)> run;       ///< from any thread
-  std::function<ExperimentResult(std::size_t index)> named;  ///< a result with the names of a run
-  Batch batch;                                               ///< their records
+  std::function<ExperimentRun(std::size_t index)> run;  ///< from any thread
+  std::function<RunName(std::size_t index)> name;       ///< of a run
+  Batch batch;                                          ///< their records
 
   /// The batch, of which runs[index] depends on a text.
   void set_batch(const std::function<std::string(std::size_t index)>& depends_on);
@@ -86,43 +95,7 @@ ExperimentResult result_of(const Experiment& experiment, std::size_t index, Exec
 std::vector<ExperimentResult> run_experiments(const std::vector<ExperimentRun>& runs, int threads,
                                               const std::function<void(double)>& progress = {});
 
-/// Takes out the methods that failed in any of their runs, since what is left of them would be
-/// compared with others on other outages. Gives a line for each failure.
-std::vector<std::string> take_out_failed(std::vector<ExperimentResult>& results);
-
-/// What runs are joined by: those of one IMU, of one recording, or all.
-enum class Grouping { imu, recording, all };
-
-/// A place of a table: all outages of one method in one group.
-struct MethodOutages {
-  struct Entry {
-    const ExperimentResult* run;  ///< points into the results
-    const OutageDrift* drift;
-  };
-
-  std::string group;
-  std::string method;
-  std::vector<Entry> entries;  ///< the same outages in the same order for each method of a group
-  int64_t missing = 0;         ///< scheduled outages in which this method gave nothing to measure
-  double cpu_s = 0;            ///< of all its runs
-
-  std::vector<double> horizontal_max() const;  ///< [m]
-  std::vector<double> vertical_max() const;
-};
-
-/// Groups and methods in order of appearance, groups first. An outage that a method of the group
-/// misses is left out for all of them. The results must outlive what is returned.
-std::vector<MethodOutages> group_outages(const std::vector<ExperimentResult>& results,
-                                         Grouping grouping);
-
-/// For tables. Those without outages are left out.
-std::vector<MethodDrifts> method_drifts(const std::vector<MethodOutages>& outages);
-
-/// One record an outage and method, in the order of the results.
-std::vector<DriftRecord> drift_records(const std::vector<ExperimentResult>& results);
-
-/// The rows of Table III: by IMU if there are several, else by recording with a last row
-/// "all recordings" if there are several of these.
-std::vector<MethodOutages> table_rows(const std::vector<ExperimentResult>& results);
+/// One record an outage.
+std::vector<DriftRecord> drift_records(const ExperimentResult& result);
 
 }  // namespace foucault::evaluation

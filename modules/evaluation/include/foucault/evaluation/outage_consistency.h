@@ -6,7 +6,7 @@
 
 #include "foucault/core/consistency.h"
 #include "foucault/evaluation/drift_table.h"
-#include "foucault/evaluation/experiment.h"
+#include "foucault/evaluation/method_outages.h"
 
 /// What methods say of their errors in outages, and how they come back from them, pooled over
 /// outages.
@@ -37,9 +37,6 @@ struct MethodNormalizedDrifts {
   std::string method;
   std::vector<NormalizedDrift> times;
 };
-
-/// Times after the beginning of an outage at which errors are normalized [s].
-const std::vector<double>& normalized_marks_s();
 
 /// An entry a place of a table. Outages without an error within 1 s of a time, or without sigmas,
 /// are not counted there. Covariances of withheld fixes are added; a reference counts as exact.
