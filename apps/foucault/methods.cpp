@@ -67,7 +67,7 @@ std::unique_ptr<state::Estimator> make_rts(const Settings& settings,
   return navigation::make_smoother(
       std::make_unique<ekf::RtsRecorder>(settings.imu.noise(), settings.calibrate.layout(),
                                          settings.ekf),
-      std::move(aligner), run_options(settings, mounting), sink);
+      std::move(aligner), run_options(settings, mounting), sink, settings.calibrate.layout());
 }
 
 /// The forward run of a batch.
@@ -87,7 +87,7 @@ std::unique_ptr<state::Estimator> make_batch(const Settings& settings,
       std::make_unique<fgo::BatchRecorder>(
           first_estimate(settings), settings.fgo, settings.batch.preintegration_model(),
           settings.imu.noise(), settings.calibrate.layout(), settings.passes),
-      std::move(aligner), run_options(settings, mounting), sink);
+      std::move(aligner), run_options(settings, mounting), sink, settings.calibrate.layout());
 }
 
 }  // namespace

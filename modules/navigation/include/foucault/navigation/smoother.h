@@ -2,6 +2,7 @@
 
 #include <deque>
 #include <memory>
+#include <optional>
 #include <variant>
 #include <vector>
 
@@ -27,22 +28,30 @@ state::Epoch between(const measurement::SmoothedEpoch& begin, const measurement:
 /// not finite; nothing has been given out then.
 class Smoother : public state::Estimator {
  public:
-  /// `recording` is what `navigator` leaves; both live as long as this.
+  /// `recording` is what `navigator` leaves; both live as long as this. `layout`: of what it
+  /// estimates, for residuals of fixes.
   Smoother(std::unique_ptr<measurement::Navigator> navigator, measurement::Recording& recording,
-           alignment::Aligner aligner, const NavigationRunOptions& options, state::Sink& sink);
+           alignment::Aligner aligner, const NavigationRunOptions& options, state::Sink& sink,
+           const state::Layout& layout = {});
 
-  void process(const Measurement& measurement) override { run_.process(measurement); }
+  void process(const Measurement& measurement) override;
   void finish() override;
 
  private:
   /// Keeps what the forward run gives out, in its order.
   class Keeper : public state::Sink {
    public:
-    Keeper(measurement::Recording& recording, EpochRate rate, state::Sink& sink)
+    Keeper(measurement::Recording& recording, EpochRate rate, state::Sink& sink,
+           const state::Layout& layout)
         : recording_(recording),
           rate_(rate),
           sink_(sink),
+          layout_(layout),
           forward_(dynamic_cast<state::ForwardSink*>(&sink)) {}
+    /// Of the recording, used or not.
+    void first_fix(int64_t t_ns) {
+      if (!first_fix_ns_) first_fix_ns_ = t_ns;
+    }
     void epoch(const state::Epoch& epoch) override;
     void fix(const state::FixResult& result) override;
     void observation(const state::ObservationResult& result) override {
@@ -75,6 +84,8 @@ class Smoother : public state::Estimator {
     measurement::Recording& recording_;
     EpochRate rate_;
     state::Sink& sink_;
+    state::Layout layout_;
+    std::optional<int64_t> first_fix_ns_;
     state::ForwardSink* forward_;  ///< the same, if it is one
     using Kept = std::variant<NodeEpoch, BetweenEpoch, NodeFix, state::FixResult,
                               state::ObservationResult, state::Notice>;
@@ -83,6 +94,7 @@ class Smoother : public state::Estimator {
     bool give(const Kept& kept);
     /// Null if it is not there yet.
     const measurement::SmoothedEpoch* node_at(std::size_t node) const;
+    state::FixResult with_postfit(const state::FixResult& forward, const state::NavState& x) const;
 
     std::deque<Kept> kept_;
     std::deque<measurement::SmoothedEpoch> nodes_;  ///< smoothed; a few before what is kept
@@ -99,10 +111,11 @@ template <class Recorder>
 std::unique_ptr<state::Estimator> make_smoother(std::unique_ptr<Recorder> recorder,
                                                 alignment::Aligner aligner,
                                                 const NavigationRunOptions& options,
-                                                state::Sink& sink) {
+                                                state::Sink& sink,
+                                                const state::Layout& layout = {}) {
   measurement::Recording& recording = *recorder;
   return std::make_unique<Smoother>(std::move(recorder), recording, std::move(aligner), options,
-                                    sink);
+                                    sink, layout);
 }
 
 }  // namespace foucault::navigation
