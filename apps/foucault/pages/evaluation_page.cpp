@@ -353,6 +353,7 @@ content::EvaluationReport report_of(const evaluation::EvaluationSummary& summary
                                     const EvaluationLabels& labels) {
   content::EvaluationReport report;
   report.title = labels.title;
+  report.links = labels.links;
   report.subtitle = "Outages: " + evaluation::outages_text(summary);
   report.methods = summary.methods();
   report.remarks = labels.remarks;
