@@ -17,7 +17,7 @@ using Bytes = std::vector<unsigned char>;
 
 constexpr int kLevel = 2;              // of zlib: higher ones take longer than they are worth
 constexpr size_t kPalette = 256;       // colours
-constexpr int kUnseen = 6;             // [levels of 255]: so far may a colour be off
+constexpr int kUnseen = 20;            // [levels of 255]: so far may a colour of few pixels be off
 constexpr size_t kFrequent = 192;      // entries of the palette for what there is most of
 constexpr size_t kMostColours = 3000;  // of an image, to look for a palette
 constexpr uint32_t kNoColour = ~0u;
