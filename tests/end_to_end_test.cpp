@@ -433,18 +433,5 @@ TEST_F(Trip, AutoIsNoNoiseByItself) {
   EXPECT_THAT(simulated.err, HasSubstr("imu.preset"));
 }
 
-TEST(Demo, LeavesRecordingsASolutionTheTablesAndTheirReports) {
-  const TestFolder folder;
-  const Outcome demo = foucault({"demo", "--out", folder / "demo"});
-  ASSERT_EQ(demo.exit_code, 0) << demo.err;
-  EXPECT_THAT(demo.out, HasSubstr(folder / "demo/report/index.html"));
-  for (const char* name : {"trip/solution.csv", "trip/metrics.json", "trip/report/index.html",
-                           "drift.csv", "metrics.json", "tables/table_iii.md", "tables/table_iv.md",
-                           "report/index.html", "tuned/metrics.json", "tuned/report/index.html"}) {
-    EXPECT_TRUE(fs::exists(folder / "demo" + ("/" + std::string(name)))) << name;
-  }
-  EXPECT_EQ(foucault({"info", folder / "demo/recordings/ADIS16465-1617s.rawlog"}).exit_code, 0);
-}
-
 }  // namespace
 }  // namespace foucault::test

@@ -1,8 +1,11 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <array>
 #include <filesystem>
 #include <memory>
+#include <string_view>
+#include <utility>
 
 #include "arguments.h"
 #include "command.h"
@@ -27,6 +30,24 @@ PaperExperiment experiment_of(const DemoOptions& options) {
   return {{1617}};
 }
 
+/// Where the reports of a demo are, and what they are called.
+constexpr std::array<std::pair<const char*, const char*>, 3> kPages{{
+    {"report", "The paper's experiment, noise as simulated"},
+    {"tuned/report", "The paper's experiment, noise tuned for each method"},
+    {"trip/report", "One trip from recording to report"},
+}};
+
+/// From one of the pages to the others.
+std::vector<page::Link> links_from(std::string_view page) {
+  std::vector<page::Link> links;
+  for (const auto& [other, title] : kPages) {
+    if (other == page) continue;
+    const std::filesystem::path target = std::filesystem::path(other).lexically_relative(page);
+    links.push_back({title, (target / "index.html").generic_string()});
+  }
+  return links;
+}
+
 void evaluate_into(const std::vector<EvaluationCase>& cases, const EvaluationLabels& labels,
                    RunStore& store, const std::filesystem::path& folder, Console& console) {
   std::filesystem::create_directories(folder);
@@ -42,6 +63,7 @@ void main_job(const PaperExperiment& experiment, const std::filesystem::path& re
   RunJob job = demo_run(experiment, recordings);
   job.out = folder.string();
   job.command_line = call.command_line;
+  job.links = links_from(kPages[2].first);
   std::filesystem::create_directories(folder);
   const RunResult result = run_into(job, folder, call.console);
   call.console.say(
@@ -67,11 +89,13 @@ void run_demo(const DemoOptions& options, RunStore& store, Call& call) {
 
   EvaluationLabels labels;
   labels.origin = {call.command_line, "", kVersion};
-  labels.title = "The paper's experiment, noise as simulated";
+  labels.title = kPages[0].second;
+  labels.links = links_from(kPages[0].first);
   labels.remarks = laboratory::remarks_as_simulated();
   evaluate_into(evaluation_cases(laboratory::cases_as_simulated(experiment), recordings), labels,
                 store, folder, call.console);
-  labels.title = "The paper's experiment, noise tuned for each method";
+  labels.title = kPages[1].second;
+  labels.links = links_from(kPages[1].first);
   labels.remarks = laboratory::remarks_tuned();
   evaluate_into(evaluation_cases(laboratory::cases_tuned(experiment), recordings), labels, store,
                 folder / "tuned", call.console);
@@ -81,7 +105,7 @@ void run_demo(const DemoOptions& options, RunStore& store, Call& call) {
   const std::filesystem::path out = options.out;
   call.console.say("");
   call.console.say(fmt::format("{:<10} {}", "written", options.out));
-  for (const char* page : {"report", "tuned/report", "trip/report"})
+  for (const auto& [page, title] : kPages)
     call.console.say(fmt::format("{:<10} {}", "report", (out / page / "index.html").string()));
 }
 

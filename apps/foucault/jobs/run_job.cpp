@@ -75,8 +75,12 @@ void process(const std::string& log, rawlog::RawlogSource& source, state::Estima
 }
 
 content::RunLabels labels(const RunJob& job, const std::string& config) {
-  return {std::filesystem::path(job.log).filename().string(), job.method, kVersion,
-          job.command_line, config};
+  return {std::filesystem::path(job.log).filename().string(),
+          job.method,
+          fmt::format("foucault {}", kVersion),
+          job.command_line,
+          config,
+          job.links};
 }
 
 state::Told told(const Settings& settings, const rawlog::RawlogSource& source) {
@@ -91,6 +95,7 @@ void write_report(const RunResult& result, content::RunReport& report,
   report.banner(verdict_banner(result));
   for (const page::KeyNumber& number : key_numbers(result)) report.key_number(number);
   for (const page::Table& table : metrics_tables(result)) report.table(table);
+  report.stages(Profile::of_thread()->times());
   report.write((folder / "report").string());
 }
 
@@ -102,7 +107,10 @@ struct RunPass {
         known(told(settings, source)) {
     const methods::Method& method = methods::find(job.method);
     const state::Mounting mounting = source.mounting().with(known.layout);
-    if (job.report) report.emplace(labels(job, config), mounting, known);
+    if (job.report) {
+      report.emplace(labels(job, config), mounting, known);
+      Profile::of_thread()->tell_solves([this](const Solve& solve) { report->solve(solve); });
+    }
     output.emplace(folder, mounting, settings.output, method.keep_references_s,
                    report ? &*report : nullptr, console);
     const std::unique_ptr<state::Estimator> estimator =
@@ -124,12 +132,20 @@ bool goes_again(fgo::BatchPasses& passes, Console& console) {
   return true;
 }
 
+/// Not a number of it was changed.
+bool is_of_preset(const Settings& settings) {
+  Settings preset = settings;
+  preset.imu = {};
+  preset.imu.preset = settings.imu.preset;
+  return noise_text(preset) == noise_text(settings);
+}
+
 /// Writes all but what the report draws.
 RunResult result_of(RunPass& pass, const RunJob& job, const Settings& settings) {
   RunResult result;
   result.method = job.method;
   result.command_line = job.command_line;
-  result.imu = settings.imu.preset;
+  result.noise = is_of_preset(settings) ? settings.imu.preset : noise_text(settings);
   result.log = std::filesystem::path(job.log).filename().string();
   result.out = job.out;
   result.report = job.report;
@@ -151,9 +167,11 @@ RunResult result_of(RunPass& pass, const RunJob& job, const Settings& settings) 
 
 RunResult run_into(const RunJob& job, const std::filesystem::path& folder, Console& console) {
   std::optional<Profile> profile;
-  if (job.profile) profile.emplace().add(Stage::start, process_cpu_s());
+  if (job.profile || job.report) profile.emplace();
+  if (job.profile) profile->add(Stage::start, process_cpu_s());
   const ResourceMeter meter;
-  Settings settings = Surveyor(console).complete(job.log, settings_for(job.log, job.settings));
+  Surveyor surveyor(console);
+  Settings settings = surveyor.complete(job.log, settings_for(job.log, job.settings));
   if (job.settings.imu.preset == "auto" && settings.imu.arw_deg_sqrt_h)  // else it warned
     console.say(fmt::format("{:<10} {}; nearest preset {}", "noise", noise_text(settings),
                             settings.imu.preset));
@@ -165,10 +183,11 @@ RunResult run_into(const RunJob& job, const std::filesystem::path& folder, Conso
     pass.emplace(job, settings, config, folder, console);
   } while (goes_again(*settings.passes, console));
 
+  for (const std::string& warning : surveyor.warnings(job.log)) pass->output->remark(warning);
   RunResult result = result_of(*pass, job, settings);
   result.resources = meter.used();
   if (pass->report) write_report(result, *pass->report, folder, console);
-  if (profile) result.profile = profile->times();
+  if (job.profile) result.profile = profile->times();
   exports::write_text_file(folder / "metrics.json", metrics_json(result));
   exports::write_text_file(folder / "config.yaml", config);
   return result;

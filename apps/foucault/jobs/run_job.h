@@ -8,6 +8,7 @@
 #include "console.h"
 #include "foucault/core/profile.h"
 #include "foucault/evaluation/run_metrics.h"
+#include "foucault/page/report_page.h"
 #include "jobs/forward_run.h"
 #include "jobs/run_facts.h"
 #include "methods.h"
@@ -25,6 +26,7 @@ struct RunJob {
   bool report = true;    ///< draw the figures
   bool profile = false;  ///< time the stages
   std::string command_line;
+  std::vector<page::Link> links = {};  ///< pages beside the report
 };
 
 struct RunResult {
@@ -38,7 +40,7 @@ struct RunResult {
   double statistics_from_s = 0;
   RunFacts facts;
   std::string command_line;
-  std::string imu;                 ///< preset of its noise
+  std::string noise;               ///< of the IMU: its preset, or the numbers in force
   Resources resources;             ///< of reading and estimating, without the report
   std::vector<StageTime> profile;  ///< of everything, if asked for
   /// Why the log broke off, one line; the results are up to there.

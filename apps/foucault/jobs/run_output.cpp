@@ -64,6 +64,7 @@ void RunOutput::start(int64_t t_ns) {
 void RunOutput::start_metrics(int64_t first_fix_ns) {
   const int64_t from_ns = first_fix_ns + nanoseconds(statistics_from_s_);
   forward_.start(from_ns);
+  if (report_ != nullptr && statistics_from_s_ > 0) report_->start_statistics(from_ns);
   metrics_.emplace(mounting_, from_ns, [this](const NormalizedSquare& square) {
     if (report_ != nullptr) report_->normalized_square(square);
   });
@@ -123,6 +124,12 @@ void RunOutput::notice(const state::Notice& notice) {
   } else {
     console_.warn(fmt::format("{}: {}", utc_text(notice.t_ns), notice.text));
   }
+}
+
+void RunOutput::remark(const std::string& text) {
+  const state::Notice notice{start_ns_.value_or(0), state::NoticeKind::skipped, text};
+  facts_.notice(notice);
+  if (report_ != nullptr) report_->notice(notice);
 }
 
 void RunOutput::damage(const std::string& text) {

@@ -37,6 +37,8 @@ class RunOutput : public state::ForwardSink {
   void catching_up(std::size_t left) override;
   void warning(const state::Notice& n) override { notice(n); }
   void prediction(const state::PredictionResult& prediction) override;
+  /// What was found before, for files and report; it has been said.
+  void remark(const std::string& text);
   /// Why the log broke off, for the report; the command says it at its end.
   void damage(const std::string& text);
 

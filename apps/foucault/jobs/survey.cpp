@@ -151,11 +151,12 @@ calibration::RecordedWay recorded_way(const std::string& log, const Settings& se
 }
 
 std::string noise_text(const Settings& settings) {
+  const imu::ImuOptions imu = settings.imu.with(settings.imu.noise());
   std::string text = fmt::format(
       "imu.arw_deg_sqrt_h {:.3g}, vrw_m_s_sqrt_h {:.3g}, gyro_bias_deg_h {:.3g}, accel_bias_mgal "
       "{:.3g}, gnss.sigma_scale {:.2g}",
-      *settings.imu.arw_deg_sqrt_h, *settings.imu.vrw_m_s_sqrt_h, *settings.imu.gyro_bias_deg_h,
-      *settings.imu.accel_bias_mgal, settings.gnss.sigma_scale);
+      *imu.arw_deg_sqrt_h, *imu.vrw_m_s_sqrt_h, *imu.gyro_bias_deg_h, *imu.accel_bias_mgal,
+      settings.gnss.sigma_scale);
   const measurement::AidOptions& aids = settings.aids;
   if (aids.nonholonomic_sigma_m_s)
     text += fmt::format(", aids.nonholonomic_sigma_m_s {:.2g} (down {:.2g})",
@@ -261,10 +262,9 @@ LearnedNoise Surveyor::learn_noise(const std::string& log, const calibration::Re
   const LearnedNoise noise = noise_of(all.noise, way);
   Settings with = settings;
   noise.apply_to(with);
-  console_.warn(fmt::format(
-      "{}: noise as the recording shows it, not as configured: {} (calibrate.noise=off: as "
-      "configured)",
-      log, noise_text(with)));
+  warn(log, fmt::format("noise as the recording shows it, not as configured: {} "
+                        "(calibrate.noise=off: as configured)",
+                        noise_text(with)));
   return noise;
 }
 
@@ -298,6 +298,16 @@ const Survey* Surveyor::found(const std::string& log) const {
   return found == seen_.end() ? nullptr : &found->second;
 }
 
+std::vector<std::string> Surveyor::warnings(const std::string& log) const {
+  const auto found = warnings_.find(log);
+  return found == warnings_.end() ? std::vector<std::string>() : found->second;
+}
+
+void Surveyor::warn(const std::string& log, const std::string& text) {
+  console_.warn(log + ": " + text);
+  warnings_[log].push_back(text);
+}
+
 Settings Surveyor::complete(const std::string& log, const Settings& settings) {
   Settings completed = settings;
   if (is_untold(settings)) expect_untold(settings.imu);
@@ -315,9 +325,8 @@ Settings Surveyor::complete(const std::string& log, const Settings& settings) {
   }
   if (is_untold(completed)) {
     completed.imu = coarse(completed.imu);
-    console_.warn(
-        fmt::format("{}: too short to tell the noise of its IMU; imu.preset={} instead of auto",
-                    log, completed.imu.preset));
+    warn(log, fmt::format("too short to tell the noise of its IMU; imu.preset={} instead of auto",
+                          completed.imu.preset));
   }
   return completed;
 }

@@ -3,6 +3,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "console.h"
 #include "foucault/calibration/learn.h"
@@ -36,7 +37,7 @@ struct Survey {
 calibration::RecordedWay recorded_way(const std::string& log, const Settings& settings,
                                       Console& console);
 
-/// What of imu and gnss is random, in the names of the settings. Precondition: imu.* has values.
+/// What of imu and gnss is random, in the names of the settings.
 std::string noise_text(const Settings& settings);
 
 /// As the settings have it. `way`: on which it was learned.
@@ -58,6 +59,8 @@ class Surveyor {
   Settings complete(const std::string& log, const Settings& settings);
   /// What it found for that; null if there was nothing to look for.
   const Survey* found(const std::string& log) const;
+  /// What it warned of, without the name of the log.
+  std::vector<std::string> warnings(const std::string& log) const;
 
  private:
   Survey survey(const std::string& log, Settings settings);
@@ -68,8 +71,11 @@ class Surveyor {
                                          const std::optional<LearnedNoise>& before,
                                          const Settings& settings);
 
+  void warn(const std::string& log, const std::string& text);
+
   Console& console_;
   std::map<std::string, Survey> seen_;
+  std::map<std::string, std::vector<std::string>> warnings_;
 };
 
 }  // namespace foucault::app

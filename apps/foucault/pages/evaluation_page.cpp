@@ -330,6 +330,7 @@ content::EvaluationReport evaluation_report(const evaluation::EvaluationSummary&
                                             const EvaluationLabels& labels) {
   content::EvaluationReport report;
   report.title = labels.title;
+  report.links = labels.links;
   report.subtitle = "Outages: " + evaluation::outages_text(summary);
   report.methods = summary.methods();
   report.remarks = labels.remarks;

@@ -14,6 +14,7 @@ struct EvaluationLabels {
   std::string title = "Outage evaluation";
   std::vector<std::string> remarks;  ///< paragraphs at the top of the report
   exports::Provenance origin;
+  std::vector<page::Link> links = {};  ///< pages beside the report
   /// What the methods of the summary are cases of, if parts of the configuration were switched off.
   std::vector<evaluation::AblationCase> ablation = {};
 };

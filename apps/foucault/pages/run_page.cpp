@@ -131,6 +131,19 @@ std::string reasons_clock(const RunResult& result) {
       "Times here count from the start of the solution; in the figures, {:.1f} s more.", later);
 }
 
+/// The verdict is judged from the fixes, as it is where there is no reference.
+std::string against_reference(const RunResult& result) {
+  constexpr double kExpected = 0.95;  // 0.997, of errors that last
+  const std::optional<evaluation::ReferenceMetrics>& reference = result.metrics.reference;
+  if (!reference || reference->position_inside.samples == 0) return {};
+  const double inside = reference->position_inside.fraction.col(2).mean();
+  if (inside >= kExpected) return {};
+  return fmt::format(
+      "This is judged from the fixes. Against the reference only {} of the position errors lie "
+      "within 3 sigma (99.7 % if the sigmas are right): the solution is worse than its sigmas say.",
+      percent(inside));
+}
+
 page::Table summary_table(const RunResult& result) {
   const RunFacts& f = result.facts;
   const double moving = f.moving_s > 0 ? f.distance_m / f.moving_s : 0;
@@ -152,7 +165,7 @@ page::Table summary_table(const RunResult& result) {
       {"Sigma, roll and pitch", level_text(f.tilt_sigma_rad, units::kDegrees, 4, "°")},
       {"Sigma, heading", level_text(f.heading_sigma_rad, units::kDegrees, 4, "°")},
       {"Smoothed against forward", smoothing_text(result)},
-      {"IMU (its noise)", result.imu},
+      {"Noise taken", result.noise},
       {"Lever arm, IMU to antenna", lever_arm_text(result)},
       {"Frame, height", "of the receiver, taken as WGS-84; heights above its ellipsoid"},
       {"Warnings", warnings_text(f)},
@@ -164,13 +177,19 @@ page::Table summary_table(const RunResult& result) {
 
 page::Banner verdict_banner(const RunResult& result) {
   const Trust& trust = result.metrics.trust;
-  std::vector<std::string> lines = trust.reasons;
+  page::Banner banner{!trust.trustworthy, "This run is trustworthy", trust.reasons};
+  if (!trust.trustworthy) {
+    banner.title = "This run cannot be believed";
+  } else if (!trust.reasons.empty()) {
+    banner.title += ", with reservations";
+  } else {
+    banner.lines = {size_text(result)};
+  }
   const std::string clock = reasons_clock(result);
-  if (!lines.empty() && !clock.empty()) lines.push_back(clock);
-  if (!trust.trustworthy) return {true, "This run cannot be believed", lines};
-  if (!lines.empty()) return {false, "This run is trustworthy, with reservations", lines};
-  lines.push_back(size_text(result));
-  return {false, "This run is trustworthy", lines};
+  if (!trust.reasons.empty() && !clock.empty()) banner.lines.push_back(clock);
+  const std::string reference = against_reference(result);
+  if (!reference.empty()) banner.lines.push_back(reference);
+  return banner;
 }
 
 std::vector<page::KeyNumber> key_numbers(const RunResult& result) {

@@ -97,6 +97,7 @@ RunResult some_result() {
   evaluation::ReferenceMetrics reference;
   reference.roll_rmse = reference.pitch_rmse = reference.heading_rmse = 0.01;
   reference.position_inside.samples = 1;
+  reference.position_inside.fraction.setOnes();
   result.metrics.reference = reference;
   result.calibration = {{state::block::gyro_bias, {1, 2, 3}, {1, 1, 1}}};
   result.profile = {{Stage::read, 1, 1}};
@@ -137,6 +138,9 @@ TEST(RunText, Verdicts) {
   result.metrics.trust.trustworthy = false;
   EXPECT_THAT(verdict_line(result), HasSubstr("NOT TRUSTWORTHY: named"));
   EXPECT_THAT(verdict_banner(result).title, HasSubstr("cannot be believed"));
+  result.metrics.reference->position_inside.fraction.setConstant(0.575);
+  EXPECT_THAT(verdict_banner(result).lines.back(),
+              AllOf(HasSubstr("57.5 %"), HasSubstr("Against the reference")));
 }
 
 TEST(RunPage, ATableForWhatThereIs) {

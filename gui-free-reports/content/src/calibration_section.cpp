@@ -178,8 +178,9 @@ void add_axis_and_prior(const ShownRow& row, Panel& panel) {
 }
 
 Panel row_panel(const RunData& data, const ShownRow& row) {
-  Panel panel = time_panel(data, {row.block, row.unit});
-  panel.title = row.name;
+  const bool is_alone = row.name.empty();  // and may have a long name
+  Panel panel = time_panel(data, {is_alone ? "" : row.block, row.unit});
+  panel.title = is_alone ? row.block : row.name;
   panel.note = value_text(row);
   panel.series = {bounds(row.t, row.value, row.sigma, row.title() + " 3 sigma"),
                   line("estimate", Ink::blue, row.t, row.value)};

@@ -276,8 +276,8 @@ std::optional<Figure> nis_figure(const RunData& data, const Consistency& c,
           "Innovation of each fix, squared by its covariance: chi-square of three degrees if that "
           "is right. 95 % of the used fixes then lie between the dashed lines, and 95 % of the "
           "means of {} in the band, if they are independent. A level above means sigmas too small, "
-          "below too large; patterns in time mean errors that are not modelled.",
-          kRunningMeanFixes)};
+          "below too large; patterns in time mean errors that are not modelled.{}",
+          kRunningMeanFixes, data.is_smoothed() ? " Innovations are of the run forward." : "")};
   figure.height_mm = 105;
   figure.panels = {nis_panel(data, c)};
   return figure;

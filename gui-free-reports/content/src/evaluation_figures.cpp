@@ -405,6 +405,18 @@ namespace {
 constexpr size_t kMostOutagePanels = 12;
 
 /// How far errors over the ground reach to any side.
+/// An end of an axis about zero, a little beyond a number that holds `farthest` and has a tick at
+/// it or not far below, so that a small panel has three.
+double axis_end(double farthest) {
+  constexpr double kMargin = 1.08;
+  if (!(farthest > 0)) return 1;
+  const double power = std::pow(10, std::floor(std::log10(farthest)));
+  for (const double round : {1.0, 1.5, 2.0, 3.0, 5.0, 7.0}) {
+    if (farthest <= round * power) return kMargin * round * power;
+  }
+  return kMargin * 10 * power;
+}
+
 double farthest_error(const DriftCase& drift_case, size_t outages) {
   double farthest = 0;
   for (const MethodCurves& curves : drift_case.methods) {
@@ -416,7 +428,7 @@ double farthest_error(const DriftCase& drift_case, size_t outages) {
       }
     }
   }
-  return farthest > 0 ? 1.08 * farthest : 1;
+  return farthest;
 }
 
 Panel error_plane(double reach) {
@@ -470,7 +482,7 @@ Figure outage_errors(const DriftCase& drift_case, const MethodOrder& order) {
                             "in the middle, to its end (mark), all at one scale. {} of {} outages, "
                             "in order of time.",
                             shown, outages)};
-  const double reach = farthest_error(drift_case, shown);
+  const double reach = axis_end(farthest_error(drift_case, shown));
   figure.columns = static_cast<int>(std::clamp<size_t>(shown, 1, 4));
   figure.height_mm = 30 + 62.0 * std::ceil(static_cast<double>(std::max<size_t>(1, shown)) / 4);
   for (size_t i = 0; i < shown; ++i) {
@@ -528,18 +540,19 @@ Panel end_error_panel(const MethodCurves& curves, const MethodOrder& order) {
 
 /// The same axes for all panels: what the widest of them asks for.
 void share_reach(Figure& figure) {
-  double reach = 0;
+  double farthest = 0;
   for (const Panel& panel : figure.panels) {
     for (const Series& series : panel.series) {
       for (const auto* column : {&series.x, &series.y}) {
-        for (const double v : *column) reach = std::max(reach, 1.08 * std::abs(v));
+        for (const double v : *column) farthest = std::max(farthest, std::abs(v));
       }
     }
   }
+  const double reach = axis_end(farthest);
   for (Panel& panel : figure.panels) {
     for (Axis* axis : {&panel.x, &panel.y}) {
-      axis->min = reach > 0 ? -reach : -1;
-      axis->max = reach > 0 ? reach : 1;
+      axis->min = -reach;
+      axis->max = reach;
     }
   }
 }
@@ -552,8 +565,9 @@ Figure end_errors(const DriftCase& drift_case, const MethodOrder& order) {
                 "Estimate minus truth over the ground at the last epoch of each outage, and the "
                 "ellipse that holds 95 % of a Gaussian with their mean and spread. A mean that is "
                 "far from zero is an error that all outages have."};
-  figure.columns = std::max(1, static_cast<int>(std::min<size_t>(3, drift_case.methods.size())));
-  const double rows = std::ceil(static_cast<double>(drift_case.methods.size()) / figure.columns);
+  const size_t count = drift_case.methods.size();
+  figure.columns = count == 4 ? 2 : static_cast<int>(std::clamp<size_t>(count, 1, 3));
+  const double rows = std::ceil(static_cast<double>(count) / figure.columns);
   figure.height_mm = 30 + 85 * std::max(1.0, rows);
   for (const MethodCurves& curves : drift_case.methods) {
     figure.panels.push_back(end_error_panel(curves, order));

@@ -76,6 +76,7 @@ ReportPage evaluation_page(const EvaluationReport& report) {
   ReportPage page;
   page.title = report.title;
   page.subtitle = report.subtitle;
+  page.links = report.links;
   page.key_numbers = report.key_numbers;
   page.sections.push_back(overview(report));
   for (const DriftCase& drift_case : report.cases) {

@@ -69,6 +69,12 @@ Table missing_figures(const ReportPage& page, const RunData& data) {
   for (const Expected& expected : kExpected) {
     if (!shows(page, expected.name)) table.rows.push_back({expected.what, expected.why_not});
   }
+  if (!shows(page, "solver")) {
+    table.rows.push_back({"Time and iterations of the solver, an epoch",
+                          data.solve_totals.count > 0
+                              ? "it solves for the whole recording at once; see Processing"
+                              : "the method does not iterate"});
+  }
   const std::string untold = untold_details(data);
   if (!untold.empty()) {
     table.rows.push_back({"Receiver: " + untold, "the recording does not carry it"});
@@ -77,8 +83,6 @@ Table missing_figures(const ReportPage& page, const RunData& data) {
                         "no outage is simulated in a run; `foucault evaluate` does it"});
   table.rows.push_back(
       {"Allan deviation", "it is of rest; `foucault allan` draws it where the log rests"});
-  table.rows.push_back({"Time and iterations of the solver, an epoch",
-                        "they are not kept; `run --profile` times the stages"});
   return table;
 }
 

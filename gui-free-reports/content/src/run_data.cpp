@@ -232,8 +232,8 @@ Eigen::Vector3d StartPlane::north_east_up(const Geodetic& place) const {
           place.height - start_.height};
 }
 
-RunData::RunData(const state::Mounting& mounting, const state::Told& told, double statistics_from)
-    : mounting_(mounting), told_(told), statistics_from_(statistics_from) {
+RunData::RunData(const state::Mounting& mounting, const state::Told& told)
+    : mounting_(mounting), told_(told) {
   const state::Epoch prior = state::prior_as_users_know(told);
   for (const state::SlowBlock& slow : told.layout.slow()) {
     const auto columns = static_cast<size_t>(2 * slow.block.size);
@@ -244,9 +244,13 @@ RunData::RunData(const state::Mounting& mounting, const state::Told& told, doubl
                       {},
                       DecimatedTable(columns)});
   }
+}
+
+void RunData::start_statistics(int64_t t_ns) {
+  statistics_from_ = seconds(t_ns);
   for (Triad* triad : {&position_error, &velocity_error, &attitude_error, &position_separation,
                        &velocity_separation, &attitude_separation, &innovation, &postfit}) {
-    triad->statistics_from = statistics_from;
+    triad->statistics_from = statistics_from_;
   }
 }
 
@@ -370,6 +374,20 @@ void RunData::add(const NormalizedSquare& square) {
     case NormalizedKind::attitude:
       return attitude_nees.add(t, {square.value});
   }
+}
+
+void RunData::add(const Solve& solve) {
+  const auto nodes = static_cast<double>(solve.nodes);
+  const auto iterations = static_cast<double>(solve.iterations);
+  SolveTotals& totals = solve_totals;
+  ++totals.count;
+  totals.nodes += nodes;
+  totals.most_nodes = std::max(totals.most_nodes, nodes);
+  totals.iterations += iterations;
+  totals.most_iterations = std::max(totals.most_iterations, iterations);
+  totals.seconds += solve.seconds;
+  totals.longest = std::max(totals.longest, solve.seconds);
+  solves.add(seconds(solve.t_ns), {iterations, 1000 * solve.seconds});
 }
 
 void RunData::add(const state::Notice& notice) {

@@ -11,6 +11,7 @@
 
 #include "foucault/core/consistency.h"
 #include "foucault/core/measurement.h"
+#include "foucault/core/profile.h"
 #include "foucault/plot/decimation.h"
 #include "foucault/state/interfaces.h"
 #include "foucault/state/result.h"
@@ -164,6 +165,14 @@ struct ImuGaps {
   double duration = 0;
 };
 
+/// What optimizations came to.
+struct SolveTotals {
+  int64_t count = 0;
+  double nodes = 0, most_nodes = 0;            ///< sum, most of one
+  double iterations = 0, most_iterations = 0;  ///< likewise
+  double seconds = 0, longest = 0;             ///< likewise
+};
+
 /// North and east of a start point along the ellipsoid, and height above it [m]. For drawing: the
 /// radii of curvature are those of the middle latitude, good to 1e-5 within 100 km.
 class StartPlane {
@@ -177,10 +186,11 @@ class StartPlane {
 
 class RunData {
  public:
-  /// Statistics are over what comes from `statistics_from` [s] on.
-  RunData(const state::Mounting& mounting, const state::Told& told, double statistics_from);
+  RunData(const state::Mounting& mounting, const state::Told& told);
 
-  double statistics_from() const { return statistics_from_; }
+  /// Statistics are over what comes from there on; to be told before.
+  void start_statistics(int64_t t_ns);
+  double statistics_from() const { return statistics_from_; }  ///< [s]
 
   void add(const state::Epoch& epoch);
   void add(const state::FixResult& fix);
@@ -191,6 +201,7 @@ class RunData {
   void add(const state::Epoch& epoch, const state::ReferenceError& error);
   void add(const state::Separation& separation);
   void add(const NormalizedSquare& square);
+  void add(const Solve& solve);
   void add_imu_stamp(int64_t t_ns);
   void add_outage(int64_t begin_ns, int64_t end_ns);
 
@@ -234,8 +245,12 @@ class RunData {
   plot::DecimatedTable velocity_nees{1};
   plot::DecimatedTable attitude_nees{1};
   std::optional<Consistency> consistency;
+  plot::DecimatedTable solves{2};  ///< iterations, time [ms]
+  SolveTotals solve_totals;
   std::map<FixQuality, size_t> qualities;
   std::map<state::FixVerdict, size_t> verdicts;
+  /// Epochs are from fixes on both sides of them.
+  bool is_smoothed() const { return !position_separation.empty(); }
   /// What to call the fixes that were not used as they are.
   std::string not_used_name() const;
   std::map<state::FixVerdict, Stretches> verdict_stretches;
@@ -262,7 +277,7 @@ class RunData {
 
   state::Mounting mounting_;
   state::Told told_;
-  double statistics_from_;
+  double statistics_from_ = 0;
   std::vector<Stretch> outages_;
   std::optional<int64_t> start_ns_;
   std::optional<StartPlane> plane_;

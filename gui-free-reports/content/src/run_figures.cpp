@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string_view>
 #include <utility>
 
 #include "foucault/core/fix_quality.h"
@@ -20,7 +21,9 @@ using namespace plot;
 namespace {
 
 constexpr const char* kHeading = "Heading";
-constexpr Names kEuler{"Roll", "Pitch", kHeading};
+constexpr const char* kSeparation = "separation";
+constexpr const char* kRoll = "Roll";
+constexpr Names kEuler{kRoll, "Pitch", kHeading};
 constexpr Names kXyz{"x axis", "y axis", "z axis"};
 
 std::string column_name(const char* axis, const std::string& noun) {
@@ -60,6 +63,9 @@ struct TriadFigure {
   Names axes;
   double least_span;      ///< of the axes
   bool is_error = false;  ///< about zero, with its statistics
+  /// What the caption has more of a run forward, and of a smoothed one.
+  const char* of_forward = "";
+  const char* of_smoothed = "";
 };
 
 constexpr std::array<TriadFigure, 3> kSolution{{
@@ -67,20 +73,24 @@ constexpr std::array<TriadFigure, 3> kSolution{{
      "position",
      "Position",
      "North, east and height of the IMU with 3-sigma bounds, given in numbers "
-     "where they are too narrow to be seen. Jumps at fixes after a gap are drift being corrected.",
+     "where they are too narrow to be seen.",
      "position",
      "m",
      {"North", "East", "Height"},
-     0.1},
+     0.1,
+     false,
+     " Jumps at fixes after a gap are drift being corrected."},
     {&RunData::velocity, "velocity", "Velocity",
      "Velocity in the local north-east-down with 3-sigma bounds. It "
      "should be smooth, and zero when the vehicle stands.",
      "velocity", "m/s", kNed, 0.1},
     {&RunData::attitude, "attitude", "Attitude of the vehicle",
      "Roll, pitch and heading of the vehicle with 3-sigma bounds; the "
-     "line of the heading is broken where it passes north. Heading is learnt while "
-     "the vehicle accelerates and turns, so its bounds narrow then.",
-     "angle", "°", kEuler, 0.5},
+     "lines are broken where the heading passes north and the roll half a turn.",
+     "angle", "°", kEuler, 0.5, false,
+     " Heading is learnt while the vehicle accelerates and turns, so its bounds narrow then.",
+     " What a turn tells of the heading holds before it, too: bounds are widest far from turns and "
+     "at both ends."},
 }};
 
 constexpr std::array<TriadFigure, 1> kAids{{
@@ -107,9 +117,9 @@ constexpr std::array<TriadFigure, 3> kErrors{{
      0, true},
     {&RunData::attitude_error, "attitude_error", "Attitude error against the reference",
      "Estimate minus reference, vehicle axes, with 3-sigma bounds. "
-     "Roll and pitch settle within seconds, the heading as the vehicle "
-     "manoeuvres; a constant offset points at a mounting angle.",
-     "error", "°", kEuler, 0, true},
+     "A constant offset points at a mounting angle.",
+     "error", "°", kEuler, 0, true,
+     " Roll and pitch settle within seconds, the heading as the vehicle manoeuvres."},
 }};
 
 constexpr std::array<TriadFigure, 3> kSeparations{{
@@ -118,21 +128,21 @@ constexpr std::array<TriadFigure, 3> kSeparations{{
      "the forward run less those of the smoothed one, squared, which end at the last fix. Beyond "
      "the bounds, the forward run thought itself better than it was: a fix was wrong, or it had "
      "taken for known what came out otherwise (a lever arm, a scale).",
-     "separation", "m", kNed, 0, true},
+     kSeparation, "m", kNed, 0, true},
     {&RunData::velocity_separation, "velocity_separation", "Velocity, smoothed less forward",
      "What the fixes that came later changed, local north-east-down, with 3-sigma bounds.",
-     "separation", "m/s", kNed, 0, true},
+     kSeparation, "m/s", kNed, 0, true},
     {&RunData::attitude_separation, "attitude_separation", "Attitude, smoothed less forward",
      "What the fixes that came later changed, vehicle axes, with 3-sigma bounds. The heading is "
      "what a forward run learns last.",
-     "separation", "°", kEuler, 0, true},
+     kSeparation, "°", kEuler, 0, true},
 }};
 
 constexpr std::array<TriadFigure, 2> kBiases{{
     {&RunData::gyro_bias, "gyro_bias", "Gyroscope bias",
-     "Bias on the axes of the IMU with 3-sigma bounds. After the first manoeuvres it should move "
-     "slowly, within the bounds it had before. Bounds wider than the axes are cut.",
-     "bias", "°/h", kXyz, 1},
+     "Bias on the axes of the IMU with 3-sigma bounds.", "bias", "°/h", kXyz, 1, false,
+     " After the first manoeuvres it should move slowly, within the bounds it had before.",
+     " It should move slowly; steps are of something else, taken for a bias."},
     {&RunData::accel_bias, "accel_bias", "Accelerometer bias",
      "Bias on the axes of the IMU with 3-sigma bounds (1 mGal = 10⁻⁵ m/s²). The "
      "horizontal axes are told from tilt only while the vehicle turns.",
@@ -175,6 +185,18 @@ Curve on_circle(const Curve& angle) {
   return result;
 }
 
+/// A wrapped angle [deg] whose line breaks where it passes half a turn.
+Curve broken_at_half_turns(const Curve& angle) {
+  Curve result;
+  for (size_t i = 0; i < angle.t.size(); ++i) {
+    if (i > 0 && std::abs(angle.value[i] - angle.value[i - 1]) > 180) {
+      result.add(angle.t[i], kNoValue, kNoValue);
+    }
+    result.add(angle.t[i], angle.value[i], angle.sigma[i]);
+  }
+  return result;
+}
+
 void show_bearing(const Curve& curve, size_t continuous, Axis& axis) {
   axis.kind = AxisKind::bearing;
   if (curve.t.size() == continuous) return;  // never over north
@@ -189,6 +211,8 @@ Panel triad_panel(const RunData& data, const TriadFigure& look, const DecimatedT
   if (look.axes[axis] == kHeading && !look.is_error) {
     curve = on_circle(curve);
     show_bearing(curve, rows.x.size(), panel.y);
+  } else if (look.axes[axis] == kRoll) {
+    curve = broken_at_half_turns(curve);
   }
   const std::string column = column_name(look.axes[axis], look.noun);
   const std::vector<double> zero(curve.t.size(), 0);
@@ -198,16 +222,36 @@ Panel triad_panel(const RunData& data, const TriadFigure& look, const DecimatedT
       bounds(curve.t, look.is_error ? zero : curve.value, curve.sigma, column + " 3 sigma"),
       line(look.is_error ? look.noun : "estimate", Ink::blue, curve.t, curve.value)};
   panel.series.back().column = column;
+  // A run forward begins with bounds that would leave no room for all that comes.
+  if (data.is_smoothed() && look.triad != &RunData::position_separation)
+    panel.series.front().range_role = RangeRole::most;
   return panel;
+}
+
+/// Its bounds, the first series, leave the axis.
+bool is_cut(const Panel& panel) {
+  const Span shown = y_span(panel);
+  const Series& bounds = panel.series.front();
+  const auto outside = [&](const std::vector<double>& edge) {
+    return std::any_of(edge.begin(), edge.end(), [&](double v) {
+      return std::isfinite(v) && !(v >= shown.min && v <= shown.max);
+    });
+  };
+  return outside(bounds.lower) || outside(bounds.upper);
 }
 
 Figure triad_figure(const RunData& data, const TriadFigure& look, const std::string& subtitle) {
   const Triad& triad = data.*look.triad;
   const DecimatedTable::Rows rows = triad.rows.rows();
-  Figure figure = stacked_figure(look.name, look.title, subtitle, look.caption);
+  Figure figure = stacked_figure(
+      look.name, look.title, subtitle,
+      look.caption + std::string(data.is_smoothed() ? look.of_smoothed : look.of_forward));
   for (size_t i = 0; i < 3; ++i) figure.panels.push_back(triad_panel(data, look, rows, i));
   if (look.is_error) add_notes(triad, figure);
   for (size_t i = 0; i < 3; ++i) tell_narrow_bounds(rows.columns[i + 3], figure.panels[i]);
+  if (std::any_of(figure.panels.begin(), figure.panels.end(), is_cut)) {
+    figure.caption += " Bounds wider than the axes are cut.";
+  }
   return figure;
 }
 
@@ -348,8 +392,10 @@ Panel sigma_panel(const RunData& data, const Triad& triad, const std::string& la
 Figure uncertainty_figure(const RunData& data, const std::string& subtitle) {
   Figure figure = stacked_figure(
       "uncertainty", "Estimated uncertainty (1σ)", subtitle,
-      "Standard deviations the estimator gives itself, on logarithmic axes. They grow without GNSS "
-      "and fall with the first fixes after.");
+      std::string("Standard deviations the estimator gives itself, on logarithmic axes. ") +
+          (data.is_smoothed() ? "They are largest in the middle of a stretch without GNSS, for "
+                                "fixes before and after it count."
+                              : "They grow without GNSS and fall with the first fixes after."));
   figure.height_mm = 200;
   figure.panels = {
       sigma_panel(data, data.position, "Position", "m", kNed),
@@ -421,9 +467,11 @@ std::optional<Figure> innovation_figure(const RunData& data, const std::string& 
   if (data.innovation.empty() && data.rejected_innovation.empty()) return std::nullopt;
   Figure figure = stacked_figure(
       "gnss_innovations", "GNSS innovations", subtitle,
-      "Fix minus its prediction, before it is used, with the 3-sigma bounds of the prediction and "
-      "the fix together. Good innovations are centred, have no pattern in time and stay within the "
-      "bounds. Crosses are rejected fixes; arrowheads stand for what lies outside of the axes.");
+      std::string("Fix minus its prediction, before it is used, with the 3-sigma bounds of the "
+                  "prediction and the fix together. Good innovations are centred, have no pattern "
+                  "in time and stay within the bounds. Crosses are rejected fixes; arrowheads "
+                  "stand for what lies outside of the axes.") +
+          (data.is_smoothed() ? " Predictions are those of the run forward." : ""));
   const DecimatedTable::Rows used = data.innovation.rows.rows();
   const DecimatedTable::Rows rejected = data.rejected_innovation.rows.rows();
   for (size_t axis = 0; axis < 3; ++axis) {
@@ -437,8 +485,11 @@ std::optional<Figure> postfit_figure(const RunData& data, const std::string& sub
   if (data.postfit.empty()) return std::nullopt;
   Figure figure = stacked_figure(
       "gnss_residuals", "GNSS residuals after use", subtitle,
-      "Fix minus the estimate that has used it. They are smaller than the innovations; steps or "
-      "slopes mean that fixes and IMU disagree (lever arm, time offset, a biased fix).");
+      std::string(data.is_smoothed() ? "Fix minus the smoothed estimate, which has used all fixes."
+                                     : "Fix minus the estimate that has used it. They are smaller "
+                                       "than the innovations.") +
+          " Steps or slopes mean that fixes and IMU disagree (lever arm, time offset, a biased "
+          "fix).");
   const DecimatedTable::Rows rows = data.postfit.rows.rows();
   const Eigen::Vector3d rms = data.postfit.statistics.rms();
   for (size_t i = 0; i < 3; ++i) {
@@ -463,6 +514,14 @@ std::optional<Figure> postfit_figure(const RunData& data, const std::string& sub
 namespace {
 
 /// `gaps`: how many there are, of samples that were left out, too.
+std::string step_note(const StepWatch& watch, size_t gaps) {
+  const size_t left_out = gaps - std::min(gaps, watch.gaps());
+  std::string note = fmt::format("{} Hz · longest {} s · {} gap{}", significant_text(watch.rate()),
+                                 significant_text(watch.longest()), gaps, gaps == 1 ? "" : "s");
+  if (left_out > 0) note += fmt::format(", {} of them of samples left out", left_out);
+  return note;
+}
+
 Panel step_panel(const RunData& data, const StepWatch& watch, size_t gaps,
                  const std::string& label) {
   Panel panel = time_panel(data, {label, "s"});
@@ -471,8 +530,7 @@ Panel step_panel(const RunData& data, const StepWatch& watch, size_t gaps,
   panel.series.back().mark = Mark::steps;
   panel.series.back().size = 0.9;
   panel.series.back().in_legend = false;
-  panel.note = fmt::format("{} Hz · longest {} s · {} gap{}", significant_text(watch.rate()),
-                           significant_text(watch.longest()), gaps, gaps == 1 ? "" : "s");
+  panel.note = step_note(watch, gaps);
   if (watch.longest() * watch.rate() > 20) {
     panel.y.kind = AxisKind::log;
   } else if (watch.longest() < 0.5) {

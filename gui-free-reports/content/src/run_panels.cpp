@@ -52,12 +52,14 @@ Interval whole_run(const RunData& data) {
 std::vector<Shade> time_shades(const RunData& data) {
   std::vector<Shade> shades;
   const std::vector<Interval> outages = data.outages();
+  const bool corrects = data.verdicts.count(state::FixVerdict::corrected) > 0;
+  const char* without_fixes = corrects ? "no GNSS used as it came" : "no usable GNSS";
   for (const Interval& outage : outages) {
     shades.push_back({outage.begin, outage.end, "GNSS withheld", Ink::gray});
   }
   for (const Interval& gap : data.fix_steps.longest_gaps()) {
     if (overlaps(gap, outages)) continue;
-    shades.push_back({gap.begin, gap.end, "no usable GNSS", Ink::orange});
+    shades.push_back({gap.begin, gap.end, without_fixes, Ink::orange});
   }
   for (const Interval& gap : data.imu_gaps().longest) {
     shades.push_back({gap.begin, gap.end, "IMU gap", Ink::purple});
@@ -104,7 +106,7 @@ Series bounds(const std::vector<double>& x, const std::vector<double>& centre,
 }
 
 void tell_narrow_bounds(const std::vector<double>& sigma, Panel& panel) {
-  constexpr double kSeen = 1.0 / 150;  // of the axis
+  constexpr double kSeen = 1.0 / 40;  // of the axis: twice as wide as the line in its middle
   std::vector<double> finite;
   std::copy_if(sigma.begin(), sigma.end(), std::back_inserter(finite),
                [](double s) { return std::isfinite(s); });

@@ -11,6 +11,7 @@
 #include "figure_list.h"
 #include "foucault/core/fix_quality.h"
 #include "foucault/plot/text.h"
+#include "processing_section.h"
 #include "run_data.h"
 #include "run_figures.h"
 #include "run_panels.h"
@@ -91,7 +92,7 @@ bool has_content(const Section& section) {
 class RunReport::Collector {
  public:
   Collector(RunLabels run_labels, const state::Mounting& mounting, const state::Told& told)
-      : labels(std::move(run_labels)), data(mounting, told, labels.statistics_from_s) {}
+      : labels(std::move(run_labels)), data(mounting, told) {}
 
   std::string subtitle() const {
     return joined({labels.recording, labels.method,
@@ -139,6 +140,7 @@ class RunReport::Collector {
     ReportPage page;
     page.title = "Navigation report";
     page.subtitle = subtitle();
+    page.links = labels.links;
     page.start_ns = data.start_ns();
     page.banner = banner;
     page.key_numbers = key_numbers;
@@ -146,13 +148,12 @@ class RunReport::Collector {
          {overview(), timeline_section(data, subtitle()),
           Section{"Errors", error_words(data), error_statistics(data),
                   error_figures(data, subtitle())},
-          Section{"Smoothed against forward",
-                  {},
-                  separation_statistics(data),
+          Section{"Smoothed against forward", separation_words(data), separation_statistics(data),
                   separation_figures(data, subtitle())},
           consistency_section(data, subtitle()), gnss(), aids_section(data, aids, subtitle()),
           calibration_section(data, subtitle()), solution(),
-          Section{"Sensor biases", {}, {}, bias_figures(data, subtitle())}, health()}) {
+          Section{"Sensor biases", {}, {}, bias_figures(data, subtitle())}, health(),
+          processing_section(data, stages, subtitle())}) {
       if (has_content(section)) page.sections.push_back(section);
     }
     if (!page.sections.empty()) {
@@ -170,6 +171,7 @@ class RunReport::Collector {
   std::vector<KeyNumber> key_numbers;
   std::vector<Table> tables;
   std::vector<AidSummary> aids;
+  std::vector<StageTime> stages;
 };
 
 RunReport::RunReport(RunLabels labels, const state::Mounting& mounting, const state::Told& told)
@@ -178,6 +180,8 @@ RunReport::RunReport(RunLabels labels, const state::Mounting& mounting, const st
 RunReport::~RunReport() = default;
 
 void RunReport::start(int64_t t_ns) { collector_->data.start(t_ns); }
+
+void RunReport::start_statistics(int64_t t_ns) { collector_->data.start_statistics(t_ns); }
 
 void RunReport::epoch(const state::Epoch& epoch) { collector_->data.add(epoch); }
 
@@ -212,6 +216,10 @@ void RunReport::imu_stamp(int64_t t_ns) { collector_->data.add_imu_stamp(t_ns); 
 void RunReport::outage(int64_t begin_ns, int64_t end_ns) {
   collector_->data.add_outage(begin_ns, end_ns);
 }
+
+void RunReport::solve(const Solve& solve) { collector_->data.add(solve); }
+
+void RunReport::stages(const std::vector<StageTime>& stages) { collector_->stages = stages; }
 
 void RunReport::banner(const Banner& banner) { collector_->banner = banner; }
 

@@ -38,6 +38,26 @@ Series triad_line(const std::string& label, size_t axis, std::vector<double> x,
   return series;
 }
 
+/// Root of the mean square over bands of the same ratio, which few stretches leave readable.
+ImuSpectrum::Density in_bands(const ImuSpectrum::Density& density) {
+  constexpr double kPerDecade = 40;
+  const auto band = [](double frequency) { return std::floor(kPerDecade * std::log10(frequency)); };
+  ImuSpectrum::Density result;
+  result.signal.resize(density.signal.size());
+  const size_t count = density.frequency.size();
+  for (size_t begin = 0, end = 0; begin < count; begin = end) {
+    while (end < count && band(density.frequency[end]) == band(density.frequency[begin])) ++end;
+    const auto lines = static_cast<double>(end - begin);
+    result.frequency.push_back(std::sqrt(density.frequency[begin] * density.frequency[end - 1]));
+    for (size_t i = 0; i < density.signal.size(); ++i) {
+      double sum = 0;
+      for (size_t k = begin; k < end; ++k) sum += std::pow(density.signal[i][k], 2);
+      result.signal[i].push_back(std::sqrt(sum / lines));
+    }
+  }
+  return result;
+}
+
 bool any_finite(const std::vector<double>& values) {
   return std::any_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
 }
@@ -68,14 +88,20 @@ std::optional<Figure> raw_imu_figure(const RunData& data, const std::string& sub
 }
 
 std::optional<Figure> imu_spectrum_figure(const RunData& data, const std::string& subtitle) {
-  const ImuSpectrum::Density density = data.imu_spectrum.density();
+  constexpr int64_t kMany = 8;  // stretches: their mean is within 35 %
+  ImuSpectrum::Density density = data.imu_spectrum.density();
   if (density.frequency.empty()) return std::nullopt;
+  const auto stretches = static_cast<int64_t>(data.imu_spectrum.stretches());
+  if (stretches < kMany) density = in_bands(density);
   Figure figure{"imu_spectrum", "Spectral density of the IMU", subtitle,
                 fmt::format("Root of the power spectral density over the whole recording (Welch: "
                             "{} stretches of {} samples, Hann window). Motion of the vehicle is at "
                             "the left; peaks are vibrations; the level at the right is the noise "
-                            "of the sensor and of what shakes it.",
-                            data.imu_spectrum.stretches(), ImuSpectrum::kLength)};
+                            "of the sensor and of what shakes it.{}",
+                            stretches, ImuSpectrum::kLength,
+                            stretches < kMany ? " Means over bands of 6 %, for so few stretches "
+                                                "scatter."
+                                              : "")};
   figure.height_mm = 105;
   figure.columns = 2;
   for (const Sensor& sensor : kSensors) {

@@ -1,5 +1,7 @@
 #include "statistics_tables.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -92,6 +94,31 @@ std::vector<std::string> error_words(const RunData& data) {
           ". That is an angle between the axes of the reference and those of the vehicle as they "
           "were told (see the mounting under Calibration, where it is estimated), not an error "
           "that the sigmas speak of."};
+}
+
+std::vector<std::string> separation_words(const RunData& data) {
+  constexpr double kExpected = 0.95;  // of what lies within 3 sigma, errors that last
+  std::vector<std::string> parts;
+  constexpr std::array<const char*, 3> kNouns{"position", "velocity", "attitude"};
+  for (size_t i = 0; i < kNouns.size(); ++i) {
+    const StatisticsLook& look = kSeparationLooks[i];
+    const AxisStatistics& s = (data.*look.triad).statistics;
+    if (s.count() == 0) continue;
+    const Eigen::Vector3d inside = s.inside_3_sigma();
+    for (size_t axis = 0; axis < 3; ++axis) {
+      const double share = inside[static_cast<Eigen::Index>(axis)];
+      if (share >= kExpected) continue;
+      parts.push_back(
+          fmt::format("{}, {} ({} %)", kNouns[i], look.axes[axis], number_text(100 * share, 0)));
+    }
+  }
+  if (parts.empty()) return {};
+  return {
+      "Smoothing changed more than the sigmas of the forward run allow, which hold 99.7 % if "
+      "they are right: " +
+      joined(parts, "; ") +
+      ". The forward run thought itself better than it was there; what it took for known came "
+      "out otherwise (see Calibration)."};
 }
 
 std::vector<Table> innovation_statistics(const RunData& data) {

@@ -12,6 +12,8 @@ namespace foucault::content {
 std::vector<page::Table> error_statistics(const RunData& data);
 /// The same of a smoother less its forward run.
 std::vector<page::Table> separation_statistics(const RunData& data);
+/// Names the axes in which smoothing changed more than it may.
+std::vector<std::string> separation_words(const RunData& data);
 /// Names angles that differ from the reference by a constant far above their sigmas: axes that are
 /// not the same.
 std::vector<std::string> error_words(const RunData& data);

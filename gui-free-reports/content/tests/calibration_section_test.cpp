@@ -47,7 +47,7 @@ TEST(CalibrationSection, EstimatesAreWholeAndInUnitsOfUsers) {
   const Figure& vehicle = figure_of(page, "calibration_vehicle");
   ASSERT_EQ(vehicle.panels.size(), 3U);
   EXPECT_NEAR(series_of(vehicle.panels[0], "estimate").y.back(), 0.01 * 180 / M_PI, 1e-9);
-  EXPECT_EQ(vehicle.panels[2].y.label, "Time offset");
+  EXPECT_EQ(vehicle.panels[2].title, "Time offset") << "alone in its block, and maybe long";
   EXPECT_NEAR(series_of(vehicle.panels[2], "estimate").y.back(), 210, 1e-9);
   EXPECT_EQ(vehicle.panels[2].note, "210 ± 30 ms");
 }

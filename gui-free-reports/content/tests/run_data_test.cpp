@@ -109,7 +109,7 @@ TEST(StartPlane, IsMetricAlongTheEllipsoid) {
 }
 
 TEST(RunData, OutagesAreRelativeToTheFirstStamp) {
-  RunData data(state::Mounting{}, {}, 0);
+  RunData data(state::Mounting{}, {});
   data.add_outage(nanoseconds(105), nanoseconds(165));
   EXPECT_TRUE(data.outages().empty()) << "no start yet";
   data.add_imu_stamp(nanoseconds(100));
@@ -119,7 +119,7 @@ TEST(RunData, OutagesAreRelativeToTheFirstStamp) {
 }
 
 TEST(RunData, SquaresGoWhereTheyBelong) {
-  RunData data(state::Mounting{}, {}, 0);
+  RunData data(state::Mounting{}, {});
   for (const NormalizedKind kind : {NormalizedKind::innovation, NormalizedKind::position,
                                     NormalizedKind::velocity, NormalizedKind::attitude}) {
     NormalizedSquare square;
@@ -140,7 +140,7 @@ TEST(RunData, SquaresGoWhereTheyBelong) {
 }
 
 TEST(RunData, CountsFixesByQualityAndVerdict) {
-  RunData data(state::Mounting{}, {}, 0);
+  RunData data(state::Mounting{}, {});
   state::FixResult fix;
   fix.quality = FixQuality::ppp;
   data.add(fix);
@@ -155,7 +155,7 @@ TEST(RunData, CountsFixesByQualityAndVerdict) {
 }
 
 TEST(RunData, KeepsTheFirstNoticesAndCountsAll) {
-  RunData data(state::Mounting{}, {}, 0);
+  RunData data(state::Mounting{}, {});
   for (int i = 0; i < 300; ++i) data.add(state::Notice{i, state::NoticeKind::skipped, ""});
   EXPECT_EQ(data.notices.size(), 200U);
   EXPECT_EQ(data.notices_seen, 300U);

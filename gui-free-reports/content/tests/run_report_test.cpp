@@ -99,6 +99,10 @@ TEST(RunReport, SmoothedAgainstForwardIsDrawnWithWhatItMayChange) {
   EXPECT_EQ(section.figures.size(), 3U);
   EXPECT_EQ(section.tables.at(0).rows.at(0).at(2), "0.300") << "RMS along north";
   EXPECT_EQ(section.tables.at(2).rows.at(2).at(2), "0.573") << "of the heading, in degrees";
+  // Sigmas of the attitude and the velocity are zero here; those of the position hold it.
+  ASSERT_EQ(section.paragraphs.size(), 1U);
+  EXPECT_NE(section.paragraphs[0].find("attitude, Heading (0 %)"), std::string::npos);
+  EXPECT_EQ(section.paragraphs[0].find("position"), std::string::npos) << section.paragraphs[0];
 }
 
 TEST(RunReport, PositionIsInMetresFromTheStart) {
@@ -241,6 +245,41 @@ TEST(RunReport, RawSamplesAndWhatTheReceiverSaysAreShown) {
   EXPECT_EQ(receiver.panels[1].series[0].y[0], 12);
 }
 
+std::string reason_not_shown(const ReportPage& page, const std::string& what) {
+  for (const std::vector<std::string>& row : section_of(page, "Not shown").tables.at(0).rows) {
+    if (row.at(0) == what) return row.at(1);
+  }
+  return {};
+}
+
+TEST(RunReport, TheSolverIsShownWhereItSolvesForEachEpoch) {
+  constexpr const char* kWhat = "Time and iterations of the solver, an epoch";
+  RunReport report(kLabels, state::Mounting{});
+  state::Epoch epoch;
+  report.epoch(epoch);
+  EXPECT_EQ(reason_not_shown(report.page(), kWhat), "the method does not iterate");
+
+  report.solve({nanoseconds(1), 1617, 4, 0.2});
+  EXPECT_NE(reason_not_shown(report.page(), kWhat).find("at once"), std::string::npos);
+  const Table& once = section_of(report.page(), "Processing").tables.at(0);
+  EXPECT_EQ(once.rows.at(0), (std::vector<std::string>{"Nodes", "1617", "1617", ""}));
+  EXPECT_EQ(once.rows.at(1).at(1), "4.00");
+
+  for (int t = 2; t < 60; ++t) report.solve({nanoseconds(t), 20, t == 30 ? 8 : 1, 0.001});
+  EXPECT_TRUE(reason_not_shown(report.page(), kWhat).empty());
+  const Figure solver = figure_of(report.page(), "solver");
+  const std::vector<double>& iterations = solver.panels[0].series[0].y;
+  EXPECT_EQ(*std::max_element(iterations.begin(), iterations.end()), 8);
+  EXPECT_NEAR(solver.panels[1].series[0].y.back(), 1, 1e-9) << "ms";
+}
+
+TEST(RunReport, TheTimeOfStagesIsShown) {
+  RunReport report(kLabels, state::Mounting{});
+  report.stages({{Stage::read, 0.25, 1}, {Stage::solve, 0.75, 1}});
+  const Table& table = section_of(report.page(), "Processing").tables.at(0);
+  EXPECT_EQ(table.rows.at(1), (std::vector<std::string>{"solve", "0.750 s", "75.0 %"}));
+}
+
 TEST(RunReport, GapsOfSamplesThatWereLeftOutCount) {
   RunReport report(kLabels, state::Mounting{});
   for (int i = 0; i < 2000; ++i) report.imu_stamp(nanoseconds(0.01 * i));
@@ -255,9 +294,9 @@ TEST(RunReport, GapsOfSamplesThatWereLeftOutCount) {
 }
 
 TEST(RunReport, StatisticsLeaveOutTheSettlingTime) {
-  RunLabels labels = kLabels;
-  labels.statistics_from_s = 50;
-  RunReport report(labels, state::Mounting{});
+  RunReport report(kLabels, state::Mounting{});
+  report.start(0);
+  report.start_statistics(nanoseconds(50));
   for (int t = 0; t < 100; ++t) {
     state::Epoch epoch;
     epoch.t_ns = nanoseconds(t);

@@ -252,8 +252,16 @@ std::string section(const Section& section, size_t index, int& figure_number) {
   return html + "</section>\n";
 }
 
+std::string links(const std::vector<Link>& links) {
+  std::string html = "<nav aria-label=\"Pages\">\n";
+  for (const Link& link : links) {
+    html += fmt::format("<a href=\"{}\">{}</a>\n", escaped(link.target), escaped(link.text));
+  }
+  return html + "</nav>\n";
+}
+
 std::string navigation(const ReportPage& page) {
-  std::string html = "<nav>\n";
+  std::string html = "<nav aria-label=\"Sections\">\n";
   for (size_t i = 0; i < page.sections.size(); ++i) {
     html += fmt::format("<a href=\"#section-{}\">{}</a>\n", i + 1, escaped(page.sections[i].title));
   }
@@ -274,6 +282,7 @@ std::string to_html(const ReportPage& page) {
       "<title>{0}</title>\n<style>{1}</style>\n</head>\n<body>\n<main>\n"
       "<header><h1>{0}</h1><p>{2}</p></header>\n",
       escaped(page.title), kStyle, escaped(page.subtitle));
+  if (!page.links.empty()) html += links(page.links);
   if (page.banner) html += banner(*page.banner);
   if (page.sections.size() > 1) html += navigation(page);
   if (!page.key_numbers.empty()) html += "<div class=\"tiles\">\n";

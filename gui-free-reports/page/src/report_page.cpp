@@ -35,6 +35,10 @@ static auto fields_of(const KeyNumber*) {
                     std::pair("unit", &KeyNumber::unit), std::pair("note", &KeyNumber::note));
 }
 
+static auto fields_of(const Link*) {
+  return std::tuple(std::pair("text", &Link::text), std::pair("target", &Link::target));
+}
+
 static auto fields_of(const Listing*) {
   return std::tuple(std::pair("title", &Listing::title), std::pair("text", &Listing::text));
 }
@@ -71,6 +75,7 @@ Json page_to_json(const ReportPage& page) {
             {"sections", Json::array()}, {"listings", page.listings}};
   for (const Section& section : page.sections) json["sections"].push_back(section_to_json(section));
   if (page.banner) json["banner"] = *page.banner;
+  if (!page.links.empty()) json["links"] = page.links;
   if (page.start_ns) json["start_ns"] = *page.start_ns;
   return json;
 }
@@ -80,6 +85,7 @@ ReportPage page_from_json(const Json& j, const std::string& folder) {
   j.at("title").get_to(page.title);
   j.at("subtitle").get_to(page.subtitle);
   j.at("footer").get_to(page.footer);
+  page.links = j.value("links", std::vector<Link>());
   if (j.contains("start_ns")) page.start_ns = j.at("start_ns").get<int64_t>();
   if (j.contains("banner")) page.banner = j.at("banner").get<Banner>();
   j.at("key_numbers").get_to(page.key_numbers);

@@ -114,6 +114,18 @@ TEST_F(ReportFolder, BannerStandsAboveEverythingElse) {
   EXPECT_EQ(files_in(base_ / "report"), before);
 }
 
+TEST_F(ReportFolder, LeadsToOtherPages) {
+  ReportPage page = small_page();
+  page.links = {{"Noise < tuned", "../../tuned/report/index.html"}};
+  write_report(page, base_ / "report");
+  const std::map<std::string, std::string> before = files_in(base_ / "report");
+  EXPECT_NE(before.at("index.html")
+                .find("<a href=\"../../tuned/report/index.html\">Noise &lt; tuned</a>"),
+            std::string::npos);
+  redraw_report(base_ / "report");
+  EXPECT_EQ(files_in(base_ / "report"), before);
+}
+
 TEST_F(ReportFolder, RedrawnIsIdentical) {
   write_report(small_page(), base_ / "report");
   const std::map<std::string, std::string> before = files_in(base_ / "report");

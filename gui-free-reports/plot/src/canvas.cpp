@@ -1,7 +1,10 @@
 #include "canvas.h"
 
 #include <algorithm>
+#include <climits>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 #include <opencv2/core.hpp>
 #include <opencv2/freetype.hpp>
 #include <opencv2/imgproc.hpp>
@@ -20,6 +23,17 @@ constexpr double kFar = 8192;   // corners are moved this close [px], for whole 
 int pixels(double points) { return static_cast<int>(std::lround(points * kPixelsPerPoint)); }
 
 cv::Scalar scalar(Rgb c) { return {double(c.blue), double(c.green), double(c.red)}; }
+
+/// Eight bytes are zero.
+bool is_blank(const uchar* coverage) {
+  uint64_t eight = 0;
+  std::memcpy(&eight, coverage, sizeof(eight));
+  return eight == 0;
+}
+
+cv::Range operator*(int factor, const cv::Range& range) {
+  return {factor * range.start, factor * range.end};
+}
 
 cv::Rect bounds(const std::vector<Polyline>& lines, double margin, const cv::Rect& clip) {
   double left = clip.br().x, top = clip.br().y, right = clip.x, bottom = clip.y;
@@ -40,32 +54,54 @@ cv::Rect bounds(const std::vector<Polyline>& lines, double margin, const cv::Rec
   return cv::Rect(first, cv::Point(int(std::ceil(right)), int(std::ceil(bottom))));
 }
 
+/// The part of a polygon on one side of a level, where `inside` is zero or above.
+template <class Inside>
+Polyline cut_off(const Polyline& polygon, Inside inside) {
+  Polyline part;
+  for (size_t i = 0; i < polygon.size(); ++i) {
+    const cv::Point2d& from = polygon[i];
+    const cv::Point2d& to = polygon[(i + 1) % polygon.size()];
+    const double begin = inside(from);
+    const double end = inside(to);
+    if (begin >= 0) part.push_back(from);
+    if ((begin >= 0) != (end >= 0)) part.push_back(from + (to - from) * (begin / (begin - end)));
+  }
+  return part;
+}
+
+Polyline between_levels(const Polyline& polygon, double top, double bottom) {
+  return cut_off(cut_off(polygon, [top](const cv::Point2d& p) { return p.y - top; }),
+                 [bottom](const cv::Point2d& p) { return bottom - p.y; });
+}
+
 /// Coverage of a part of the image at four times its resolution.
 class FineMask {
  public:
-  /// `scratch` holds the pixels while the mask lives.
+  /// `scratch` holds the pixels while the mask lives, and zeros before and after.
   FineMask(const cv::Rect& area, std::vector<uchar>& scratch) : area_(area) {
     const cv::Size size(area.width * kFine, area.height * kFine);
     if (scratch.size() < static_cast<size_t>(size.area())) scratch.resize(size_t(size.area()));
     fine_ = cv::Mat(size, CV_8UC1, scratch.data());
-    fine_.setTo(0);
   }
+  ~FineMask() { fine_.rowRange(kFine * rows()).setTo(0); }
+  FineMask(const FineMask&) = delete;
+  FineMask& operator=(const FineMask&) = delete;
 
-  /// Nothing was drawn.
-  bool blank() const { return blank_; }
+  /// Of the area, those in which something was drawn.
+  cv::Range rows() const { return first_ < last_ ? cv::Range(first_, last_) : cv::Range(0, 0); }
 
   void line(const cv::Point2d& a, const cv::Point2d& b, double width) {
     cv::Point2d p = a;
     cv::Point2d q = b;
     if (!cut(p, q)) return;
-    blank_ = false;
+    touch(std::min(p.y, q.y) - width, std::max(p.y, q.y) + width);
     const int thickness = std::max(1, int(std::lround(width * kFine)));
     cv::line(fine_, fixed(p), fixed(q), kOn, thickness, cv::LINE_8, kShift);
   }
 
   void disc(const cv::Point2d& centre, double radius, double ring_width = 0) {
     if (misses(centre.y - radius - ring_width, centre.y + radius + ring_width)) return;
-    blank_ = false;
+    touch(centre.y - radius - ring_width, centre.y + radius + ring_width);
     const int fixed_radius = int(std::lround(radius * kFine * (1 << kShift)));
     const int thickness = ring_width > 0 ? int(std::lround(ring_width * kFine)) : cv::FILLED;
     cv::circle(fine_, fixed(centre), fixed_radius, kOn, thickness, cv::LINE_8, kShift);
@@ -75,16 +111,32 @@ class FineMask {
     const auto by_height = [](const cv::Point2d& a, const cv::Point2d& b) { return a.y < b.y; };
     const auto [top, bottom] = std::minmax_element(corners.begin(), corners.end(), by_height);
     if (misses(top->y, bottom->y)) return;
-    blank_ = false;
+    touch(top->y, bottom->y);
     std::vector<cv::Point> points;
     points.reserve(corners.size());
     for (const cv::Point2d& corner : corners) points.push_back(fixed(clamped(corner)));
     cv::fillConvexPoly(fine_, points, kOn, cv::LINE_8, kShift);
   }
 
+  /// Need not be convex.
+  void polygon(const Polyline& corners) {
+    const Polyline part = between_levels(corners, area_.y - 1, area_.br().y + 1);
+    if (part.empty()) return;
+    std::vector<cv::Point> points;
+    points.reserve(part.size());
+    for (const cv::Point2d& corner : part) {
+      points.push_back(fixed(clamped(corner)));
+      touch(corner.y, corner.y);
+    }
+    const cv::Point* begin = points.data();
+    const int size = int(points.size());
+    cv::fillPoly(fine_, &begin, &size, 1, kOn, cv::LINE_8, kShift);
+  }
+
+  /// Of these rows.
   cv::Mat coverage() const {
     cv::Mat half, whole;
-    cv::resize(fine_, half, {}, 0.5, 0.5, cv::INTER_AREA);
+    cv::resize(fine_.rowRange(kFine * rows()), half, {}, 0.5, 0.5, cv::INTER_AREA);
     cv::resize(half, whole, {}, 0.5, 0.5, cv::INTER_AREA);
     return whole;
   }
@@ -102,6 +154,15 @@ class FineMask {
   cv::Point2d clamped(const cv::Point2d& p) const {
     return {std::clamp(p.x, area_.x - kFar, area_.br().x + kFar),
             std::clamp(p.y, area_.y - kFar, area_.br().y + kFar)};
+  }
+
+  /// Something is drawn between these heights; edges reach a fine pixel further.
+  void touch(double top, double bottom) {
+    const auto row = [&](double y) {
+      return int(std::clamp(std::floor(y - area_.y), -1.0, double(area_.height)));
+    };
+    first_ = std::min(first_, std::max(0, row(top - 1)));
+    last_ = std::max(last_, std::min(area_.height, row(bottom + 1) + 1));
   }
 
   /// Nothing of what lies between these heights is in the area.
@@ -133,7 +194,8 @@ class FineMask {
 
   cv::Rect area_;
   cv::Mat fine_;
-  bool blank_ = true;
+  int first_ = INT_MAX;  ///< row of the area; what was drawn ends before `last_`
+  int last_ = 0;
 };
 
 std::vector<Polyline> dashes(const Polyline& line, const std::vector<double>& pattern) {
@@ -280,13 +342,19 @@ Typesetter::Typesetter(const Fonts& fonts)
 
 double Typesetter::width(const std::string& text, double points, bool bold) {
   if (text.empty()) return 0;
+  const auto [known, is_new] = widths_.try_emplace({text, pixels(points), bold});
   int baseline = 0;
-  return font(bold).getTextSize(text, pixels(points), -1, &baseline).width;
+  if (is_new) {
+    known->second = font(bold).getTextSize(text, pixels(points), -1, &baseline).width;
+  }
+  return known->second;
 }
 
-Typesetter::Ink Typesetter::set(const std::string& text, double points, bool bold) {
+const Typesetter::Ink& Typesetter::set(const std::string& text, double points, bool bold) {
   const int em = pixels(points);
-  Ink ink;
+  const auto [known, is_new] = inks_.try_emplace({text, em, bold});
+  Ink& ink = known->second;
+  if (!is_new) return ink;
   ink.width = int(std::lround(width(text, points, bold)));
   ink.origin = {em, em + em / 2};
   cv::Mat paper(2 * em + em / 4, ink.width + 2 * em, CV_8UC3, cv::Scalar::all(255));
@@ -296,8 +364,13 @@ Typesetter::Ink Typesetter::set(const std::string& text, double points, bool bol
   return ink;
 }
 
-Canvas::Canvas(cv::Size size, Typesetter& typesetter)
-    : Surface(typesetter), image_(size, CV_8UC3, cv::Scalar::all(255)) {}
+Canvas::Canvas(cv::Size size, Typesetter& typesetter) : Surface(typesetter) { clear(size); }
+
+void Canvas::clear(cv::Size size) {
+  constexpr uchar kWhite = 255;
+  pixels_.assign(3 * size_t(size.area()), kWhite);
+  image_ = cv::Mat(size, CV_8UC3, pixels_.data());
+}
 
 /// In bands: a mask of the whole area would take sixteen times its pixels.
 template <class Draw>
@@ -306,7 +379,8 @@ void Canvas::cover(const cv::Rect& area, Rgb colour, double opacity, Draw draw) 
     const cv::Rect band(area.x, top, area.width, std::min(kBand, area.br().y - top));
     FineMask mask(band, scratch_);
     draw(mask);
-    if (!mask.blank()) blend(mask.coverage(), band.tl(), colour, opacity);
+    if (mask.rows().empty()) continue;
+    blend(mask.coverage(), {band.x, band.y + mask.rows().start}, colour, opacity);
   }
 }
 
@@ -323,12 +397,12 @@ void Canvas::polylines(const std::vector<Polyline>& lines, const Pen& pen, const
   });
 }
 
-void Canvas::polygons(const std::vector<Polyline>& convex, Rgb colour, double opacity,
+void Canvas::polygons(const std::vector<Polyline>& polygons, Rgb colour, double opacity,
                       const cv::Rect& clip) {
-  const cv::Rect area = bounds(convex, 1, clip);
+  const cv::Rect area = bounds(polygons, 1, clip);
   if (area.empty()) return;
   cover(area, colour, opacity, [&](FineMask& mask) {
-    for (const Polyline& polygon : convex) mask.convex(polygon);
+    for (const Polyline& polygon : polygons) mask.polygon(polygon);
   });
 }
 
@@ -360,7 +434,8 @@ void Canvas::box(const cv::Rect& area, Rgb colour, double opacity) {
 
 void Canvas::text(const std::string& text, cv::Point2d at, const TextStyle& style) {
   if (text.empty()) return;
-  Typesetter::Ink ink = typesetter_.set(text, style.points, style.bold);
+  const Typesetter::Ink& ink = typesetter_.set(text, style.points, style.bold);
+  cv::Mat coverage = ink.coverage;
   const double cap = kCapHeight * pixels(style.points);
   const double along = style.x == AlignX::left     ? 0
                        : style.x == AlignX::centre ? 0.5 * ink.width
@@ -371,11 +446,12 @@ void Canvas::text(const std::string& text, cv::Point2d at, const TextStyle& styl
   cv::Point2d anchor(ink.origin.x + along, ink.origin.y - above_baseline);
   if (style.upwards) {
     anchor = {anchor.y, ink.coverage.cols - 1 - anchor.x};
-    cv::rotate(ink.coverage, ink.coverage, cv::ROTATE_90_COUNTERCLOCKWISE);
+    coverage = cv::Mat();
+    cv::rotate(ink.coverage, coverage, cv::ROTATE_90_COUNTERCLOCKWISE);
   }
   const cv::Point top_left(int(std::lround(at.x - anchor.x)), int(std::lround(at.y - anchor.y)));
-  if (style.halo) blend(dilated(ink.coverage, 4), top_left, {255, 255, 255}, 0.9);
-  blend(ink.coverage, top_left, style.colour, 1);
+  if (style.halo) blend(dilated(coverage, 4), top_left, {255, 255, 255}, 0.9);
+  blend(coverage, top_left, style.colour, 1);
 }
 
 void Canvas::blend(const cv::Mat& coverage, cv::Point top_left, Rgb colour, double opacity) {
@@ -387,6 +463,8 @@ void Canvas::blend(const cv::Mat& coverage, cv::Point top_left, Rgb colour, doub
     const uchar* alpha = coverage.ptr(target.y + y - top_left.y) + (target.x - top_left.x);
     cv::Vec3b* pixel = image_.ptr<cv::Vec3b>(target.y + y) + target.x;
     for (int x = 0; x < target.width; ++x) {
+      while (x + 8 <= target.width && is_blank(alpha + x)) x += 8;
+      if (x == target.width) break;
       const int a = alpha[x] * share;
       if (a == 0) continue;
       for (int c = 0; c < 3; ++c) {

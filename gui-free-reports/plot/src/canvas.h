@@ -1,7 +1,9 @@
 #pragma once
 
+#include <map>
 #include <opencv2/core/mat.hpp>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "foucault/plot/figure.h"
@@ -43,7 +45,8 @@ struct TextStyle {
   bool halo = false;     ///< a white seam that keeps it legible over data
 };
 
-/// Reads the fonts once; draws and measures text.
+/// Reads the fonts once; draws and measures text. What was set stays: labels of axes come again and
+/// again.
 class Typesetter {
  public:
   /// Throws DataError if a font cannot be read.
@@ -58,13 +61,17 @@ class Typesetter {
     cv::Point origin;
     int width = 0;
   };
-  Ink set(const std::string& text, double points, bool bold);
+  const Ink& set(const std::string& text, double points, bool bold);
 
  private:
+  using Key = std::tuple<std::string, int, bool>;  ///< text, size [px], bold
+
   cv::freetype::FreeType2& font(bool bold) { return bold ? *bold_ : *regular_; }
 
   cv::Ptr<cv::freetype::FreeType2> regular_;
   cv::Ptr<cv::freetype::FreeType2> bold_;
+  std::map<Key, double> widths_;
+  std::map<Key, Ink> inks_;
 };
 
 /// What one can draw on. Coordinates in pixels, x right, y down, fractions meaningful.
@@ -79,7 +86,7 @@ class Surface {
 
   virtual void polylines(const std::vector<Polyline>& lines, const Pen& pen,
                          const cv::Rect& clip) = 0;
-  virtual void polygons(const std::vector<Polyline>& convex, Rgb colour, double opacity,
+  virtual void polygons(const std::vector<Polyline>& polygons, Rgb colour, double opacity,
                         const cv::Rect& clip) = 0;
   virtual void markers(const Polyline& places, Shape shape, double diameter, Rgb colour,
                        double opacity, const cv::Rect& clip) = 0;
@@ -100,9 +107,12 @@ class Canvas : public Surface {
  public:
   Canvas(cv::Size size, Typesetter& typesetter);
 
+  /// A new white page; the memory is that of the last one.
+  void clear(cv::Size size);
+
   const cv::Mat& image() const { return image_; }
   void polylines(const std::vector<Polyline>& lines, const Pen& pen, const cv::Rect& clip) override;
-  void polygons(const std::vector<Polyline>& convex, Rgb colour, double opacity,
+  void polygons(const std::vector<Polyline>& polygons, Rgb colour, double opacity,
                 const cv::Rect& clip) override;
   void markers(const Polyline& places, Shape shape, double diameter, Rgb colour, double opacity,
                const cv::Rect& clip) override;
@@ -115,7 +125,8 @@ class Canvas : public Surface {
   void cover(const cv::Rect& area, Rgb colour, double opacity, Draw draw);
   void blend(const cv::Mat& coverage, cv::Point top_left, Rgb colour, double opacity);
 
-  cv::Mat image_;
+  std::vector<uchar> pixels_;
+  cv::Mat image_;               // of them
   std::vector<uchar> scratch_;  // for the fine coverage; kept
 };
 

@@ -1,11 +1,12 @@
 #include <fmt/format.h>
 
-#include <opencv2/imgcodecs.hpp>
+#include <algorithm>
 
 #include "canvas.h"
 #include "foucault/core/error.h"
 #include "layout.h"
 #include "panel_painter.h"
+#include "png.h"
 #include "renderer_part.h"
 #include "style.h"
 #include "svg_canvas.h"
@@ -60,6 +61,31 @@ void paint_titles(const Figure& figure, Surface& canvas) {
               {style::kSubtitlePoints, style::kSoftText});
 }
 
+/// What is drawn is as high as it has to be for its width: a map.
+bool has_shape(const Figure& figure) {
+  return std::any_of(figure.panels.begin(), figure.panels.end(),
+                     [](const Panel& panel) { return panel.equal_aspect; });
+}
+
+/// As wide as a column, or as the text if panels stand side by side. What titles say is in a paper
+/// said by the caption.
+Figure fitted_to_paper(const Figure& figure) {
+  constexpr double kLower = 0.8;  // a narrow figure is not to be as high as a wide one
+  constexpr double kAround = 35;  // [mm] above and below a map, whatever its width
+  const bool is_column = figure.columns <= 1 || figure.panels.size() <= 1;
+  Figure fitted = figure;
+  fitted.title.clear();
+  fitted.subtitle.clear();
+  fitted.width_mm = (is_column ? style::kColumnMm : style::kTextWidthMm) / style::kPaperScale;
+  const double narrower = fitted.width_mm / figure.width_mm;
+  if (is_column && has_shape(figure)) {
+    fitted.height_mm = kAround + narrower * (figure.height_mm - kAround);
+  } else {
+    fitted.height_mm *= is_column ? kLower : narrower;
+  }
+  return fitted;
+}
+
 }  // namespace
 
 class OpencvDrawing final : public Drawing {
@@ -69,22 +95,18 @@ class OpencvDrawing final : public Drawing {
   std::vector<unsigned char> png(const Figure& figure) override {
     check(figure);
     const Layout layout = lay_out(figure, typesetter_);
-    Canvas canvas(layout.page, typesetter_);
-    paint(figure, layout, canvas);
-    // Without a level, OpenCV takes the fast one and the filter that suits it: a fifth of the time
-    // of level 5 for half as many bytes again.
-    std::vector<unsigned char> bytes;
-    cv::imencode(".png", canvas.image(), bytes,
-                 {cv::IMWRITE_PNG_STRATEGY, cv::IMWRITE_PNG_STRATEGY_DEFAULT});
-    return bytes;
+    canvas_.clear(layout.page);
+    paint(figure, layout, canvas_);
+    return to_png(canvas_.image());
   }
 
   std::string svg(const Figure& figure) override {
     check(figure);
-    const Layout layout = lay_out(figure, typesetter_);
+    const Figure fitted = fitted_to_paper(figure);
+    const Layout layout = lay_out(fitted, typesetter_);
     SvgCanvas canvas(layout.page, typesetter_);
-    paint(figure, layout, canvas);
-    return canvas.svg();
+    paint(fitted, layout, canvas);
+    return canvas.svg(style::kPaperScale);
   }
 
  private:
@@ -95,6 +117,7 @@ class OpencvDrawing final : public Drawing {
   }
 
   Typesetter typesetter_;
+  Canvas canvas_{{}, typesetter_};
 };
 
 }  // namespace foucault::plot

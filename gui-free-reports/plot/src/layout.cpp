@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "foucault/plot/text.h"
 #include "style.h"
 
 namespace foucault::plot {
@@ -19,6 +20,17 @@ struct Track {
   double begin = 0;
   double length = 0;
 };
+
+std::vector<std::string> parted(const std::string& text, const std::string& between) {
+  std::vector<std::string> parts;
+  size_t begin = 0;
+  for (size_t end = text.find(between); end != std::string::npos; end = text.find(between, begin)) {
+    parts.push_back(text.substr(begin, end - begin));
+    begin = end + between.size();
+  }
+  parts.push_back(text.substr(begin));
+  return parts;
+}
 
 class LayoutMaker {
  public:
@@ -70,10 +82,31 @@ class LayoutMaker {
     return Legend(legend_entries(panel), column_width() - millimetres(20), typesetter_);
   }
 
+  /// The note in as few lines as have room, the first of them beside the title; one line even if it
+  /// is empty where there is a title.
+  std::vector<std::string> note_lines(const Panel& panel) {
+    if (panel.title.empty() && panel.note.empty()) return {};
+    constexpr const char* kBetween = " · ";
+    const double width = column_width() - millimetres(17);  // about that of the plot
+    const double title = typesetter_.width(panel.title, style::kAxisPoints, true);
+    std::vector<std::string> lines{""};
+    for (const std::string& part : parted(panel.note, kBetween)) {
+      const std::string longer = joined({lines.back(), part}, kBetween);
+      const double taken = lines.size() == 1 && title > 0 ? title + millimetres(3) : 0;
+      const bool fits = taken + typesetter_.width(longer, style::kNotePoints) <= width;
+      const bool is_first = lines.back().empty() && taken == 0;
+      if (fits || is_first) {
+        lines.back() = longer;
+      } else {
+        lines.push_back(part);
+      }
+    }
+    return lines;
+  }
+
   double above(int i) {
     const Panel& panel = figure_.panels[size_t(i)];
-    double height = style::kAboveData;
-    if (!panel.title.empty() || !panel.note.empty()) height += millimetres(5);
+    double height = style::kAboveData + style::kHeadLine * double(note_lines(panel).size());
     if (const std::optional<Legend> legend = panel_legend(panel)) height += legend->height();
     return height;
   }
@@ -225,7 +258,7 @@ class LayoutMaker {
     const AxisScale y(panel.y, up, plot.br().y, plot.y);
     layout_.panels.push_back({&panel, plot, x, y, x_ticks(x, plot.width), y_ticks(y, plot.height),
                               colour_scale(panel, plot), has_x_labels(i), column_begin(int(c)),
-                              panel_legend(panel)});
+                              panel_legend(panel), note_lines(panel)});
   }
 
   const Figure& figure_;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "canvas.h"
@@ -21,6 +22,7 @@ struct PlacedPanel {
   bool has_x_labels = true;
   double left_of_labels = 0;  ///< x of the y axis' title [px]
   std::optional<Legend> legend;
+  std::vector<std::string> notes;  ///< the panel's note in lines; the title stands on the first
 };
 
 struct Layout {

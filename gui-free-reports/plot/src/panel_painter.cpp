@@ -1,7 +1,6 @@
 #include "panel_painter.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 
@@ -330,19 +329,25 @@ class PanelPainter {
     }
   }
 
+  /// Each stretch between gaps as one shape: along its upper edge and back along the lower one.
   void band(const Series& series) {
-    std::vector<Polyline> pieces;
-    for (size_t i = 0; i + 1 < series.x.size(); ++i) {
-      const double left = x(series.x[i]);
-      const double right = x(series.x[i + 1]);
-      const std::array<double, 4> edge{y(series.lower[i]), y(series.upper[i]),
-                                       y(series.upper[i + 1]), y(series.lower[i + 1])};
-      const bool whole =
-          std::all_of(edge.begin(), edge.end(), [](double e) { return std::isfinite(e); });
-      if (!whole || !drawable(left, right)) continue;
-      pieces.push_back({{left, edge[0]}, {left, edge[1]}, {right, edge[2]}, {right, edge[3]}});
+    std::vector<Polyline> stretches(1);
+    std::vector<Polyline> lower(1);
+    for (size_t i = 0; i < series.x.size(); ++i) {
+      const cv::Point2d low(x(series.x[i]), y(series.lower[i]));
+      const cv::Point2d high(low.x, y(series.upper[i]));
+      if (drawable(low.x, low.y) && std::isfinite(high.y)) {
+        stretches.back().push_back(high);
+        lower.back().push_back(low);
+      } else if (!lower.back().empty()) {
+        stretches.emplace_back();
+        lower.emplace_back();
+      }
     }
-    canvas_.polygons(pieces, rgb(series.ink), series.opacity, plot_);
+    for (size_t i = 0; i < stretches.size(); ++i) {
+      stretches[i].insert(stretches[i].end(), lower[i].rbegin(), lower[i].rend());
+    }
+    canvas_.polygons(stretches, rgb(series.ink), series.opacity, plot_);
   }
 
   // ---- foreground
@@ -434,10 +439,18 @@ class PanelPainter {
       canvas_.text(tick.label, {plot_.x - length - millimetres(0.9), y(tick.at)},
                    {style::kTickPoints, style::kSoftText, AlignX::right, AlignY::middle});
     }
-    TextStyle style{style::kAxisPoints, style::kText, AlignX::centre, AlignY::top};
+    const std::string title = axis_title(panel_.y, placed_.y_ticks);
+    TextStyle style{fitting_points(title), style::kText, AlignX::centre, AlignY::top};
     style.upwards = true;
-    canvas_.text(axis_title(panel_.y, placed_.y_ticks),
-                 {placed_.left_of_labels, plot_.y + plot_.height / 2.0}, style);
+    canvas_.text(title, {placed_.left_of_labels, plot_.y + plot_.height / 2.0}, style);
+  }
+
+  /// Of a title that is longer than the axis and a little more: smaller, as far as it can be read.
+  double fitting_points(const std::string& title) {
+    constexpr double kLeast = 7;
+    const double room = plot_.height + millimetres(5);
+    const double width = canvas_.typesetter().width(title, style::kAxisPoints);
+    return std::clamp(style::kAxisPoints * room / std::max(1.0, width), kLeast, style::kAxisPoints);
   }
 
   void annotate(const Annotation& annotation) {
@@ -558,9 +571,13 @@ class PanelPainter {
     }
     TextStyle title{style::kAxisPoints, style::kText, AlignX::left, AlignY::baseline};
     title.bold = true;
+    level -= style::kHeadLine * std::max(0.0, double(placed_.notes.size()) - 1);
     canvas_.text(panel_.title, {double(plot_.x), level}, title);
-    canvas_.text(panel_.note, {double(plot_.br().x), level},
-                 {style::kNotePoints, style::kSoftText, AlignX::right, AlignY::baseline});
+    for (const std::string& note : placed_.notes) {
+      canvas_.text(note, {double(plot_.br().x), level},
+                   {style::kNotePoints, style::kSoftText, AlignX::right, AlignY::baseline});
+      level += style::kHeadLine;
+    }
   }
 
   const PlacedPanel& placed_;

@@ -12,6 +12,12 @@ constexpr double kSubtitlePoints = 9.5;
 constexpr double kAxisPoints = 10;
 constexpr double kTickPoints = 9;
 constexpr double kNotePoints = 9;
+/// Figures for papers: the usual widths of a column and of a page, and how much smaller all that is
+/// on them is, so that numbers at the axes have 7 pt.
+constexpr double kColumnMm = 85;
+constexpr double kTextWidthMm = 178;
+constexpr double kPaperScale = 7 / kTickPoints;
+
 constexpr double kShadeOpacity = 0.16;
 
 constexpr double kOuter = millimetres(4);
@@ -20,7 +26,7 @@ constexpr double kStackedGap = millimetres(3);
 constexpr double kTickLength = millimetres(1);
 /// Between the upper end of an axis and words: markers at that end reach beyond it.
 constexpr double kAboveData = millimetres(1.8);
-constexpr double kTextHeight = millimetres(3.6);
+constexpr double kHeadLine = millimetres(5);
 constexpr double kColourBar = millimetres(4);
 
 constexpr Rgb kSpine{90, 95, 102};

@@ -138,10 +138,10 @@ void SvgCanvas::polylines(const std::vector<Polyline>& lines, const Pen& pen,
        clip);
 }
 
-void SvgCanvas::polygons(const std::vector<Polyline>& convex, Rgb colour, double opacity,
+void SvgCanvas::polygons(const std::vector<Polyline>& polygons, Rgb colour, double opacity,
                          const cv::Rect& clip) {
   std::string data;
-  for (const Polyline& polygon : convex) data += corners(polygon);
+  for (const Polyline& polygon : polygons) data += corners(polygon);
   path(data, fmt::format("fill=\"{}\" fill-opacity=\"{:.2f}\"", hex(colour), opacity), clip);
 }
 
@@ -180,13 +180,13 @@ void SvgCanvas::text(const std::string& text, cv::Point2d at, const TextStyle& s
       style.bold ? " font-weight=\"bold\"" : "", halo, escaped_text(text));
 }
 
-std::string SvgCanvas::svg() const {
+std::string SvgCanvas::svg(double scale) const {
   std::string file = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{:.1f}mm\" height=\"{:.1f}mm\" "
       "viewBox=\"0 0 {} {}\" font-family=\"DejaVu Sans, sans-serif\">\n"
       "<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n<defs>\n",
-      size_.width / kPixelsPerMillimetre, size_.height / kPixelsPerMillimetre, size_.width,
-      size_.height);
+      scale * size_.width / kPixelsPerMillimetre, scale * size_.height / kPixelsPerMillimetre,
+      size_.width, size_.height);
   for (size_t i = 0; i < clips_.size(); ++i) {
     const cv::Rect& c = clips_[i];
     file += fmt::format(

@@ -7,22 +7,22 @@
 
 namespace foucault::plot {
 
-/// The same drawing as vectors, for papers: SVG in the pixels of a Canvas, as wide on paper as the
-/// figure says. Text stays text, in DejaVu Sans or what the reader has.
+/// The same drawing as vectors, for papers: SVG in the pixels of a Canvas. Text stays text,
+/// in DejaVu Sans or what the reader has.
 class SvgCanvas : public Surface {
  public:
   SvgCanvas(cv::Size size, Typesetter& typesetter);
 
   void polylines(const std::vector<Polyline>& lines, const Pen& pen, const cv::Rect& clip) override;
-  void polygons(const std::vector<Polyline>& convex, Rgb colour, double opacity,
+  void polygons(const std::vector<Polyline>& polygons, Rgb colour, double opacity,
                 const cv::Rect& clip) override;
   void markers(const Polyline& places, Shape shape, double diameter, Rgb colour, double opacity,
                const cv::Rect& clip) override;
   void box(const cv::Rect& area, Rgb colour, double opacity = 1) override;
   void text(const std::string& text, cv::Point2d at, const TextStyle& style) override;
 
-  /// The whole file.
-  std::string svg() const;
+  /// The whole file; a pixel is `scale` times as large on paper as that of a Canvas.
+  std::string svg(double scale = 1) const;
 
  private:
   /// The reference to a clip path of this rectangle, which is defined once.

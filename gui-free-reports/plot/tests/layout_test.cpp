@@ -45,6 +45,19 @@ TEST_F(LaidOut, PanelsLieOnThePageAndApart) {
   EXPECT_EQ(layout.panels[0].plot.x, layout.panels[4].plot.x);
 }
 
+TEST_F(LaidOut, NotesThatDoNotFitBesideTheTitleGoOnBelow) {
+  Figure figure = figure_of(1, 1);
+  figure.panels[0].title = "Nonholonomic";
+  figure.panels[0].note = "mean 0.48 · 1470 used, 0 rejected · from 60 s on";
+  EXPECT_EQ(lay_out(figure, typesetter_).panels[0].notes.size(), 1U);
+  const int top = lay_out(figure, typesetter_).panels[0].plot.y;
+  figure.width_mm = 90;
+  const PlacedPanel narrow = lay_out(figure, typesetter_).panels[0];
+  EXPECT_EQ(narrow.notes,
+            (std::vector<std::string>{"mean 0.48", "1470 used, 0 rejected · from 60 s on"}));
+  EXPECT_GT(narrow.plot.y, top);
+}
+
 TEST_F(LaidOut, OnlyTheLowestPanelsOfASharedAxisHaveLabels) {
   Figure figure = figure_of(5, 2);
   figure.share_x = true;

@@ -1,7 +1,9 @@
 #include "foucault/plot/renderer.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -47,6 +49,34 @@ TEST(Renderer, SurvivesEmptyAndUglyData) {
     }
   }
   EXPECT_EQ(draw(Figure{}).cols, 2000) << "no panels at all";
+}
+
+/// As wide as a column of a journal, letters in points of print.
+TEST(Renderer, VectorsFitAColumnOfAPaper) {
+  Figure figure = curve({0, 1, 2}, {0, 1, 0});
+  Renderer renderer;
+  const std::string column = renderer.svg(figure);
+  EXPECT_NE(column.find("width=\"85.0mm\""), std::string::npos) << column.substr(0, 200);
+  EXPECT_EQ(column.find(figure.title), std::string::npos) << "titles are a caption's";
+  // 7 pt on paper: pixels of the drawing, of which 874 are 85 mm.
+  const double em = 7 * 25.4 / 72 / 85 * 874;
+  EXPECT_NE(column.find(fmt::format("font-size=\"{:.1f}\"", em)), std::string::npos) << em;
+  figure.columns = 2;
+  figure.panels.push_back(figure.panels[0]);
+  EXPECT_NE(renderer.svg(figure).find("width=\"178.0mm\""), std::string::npos);
+}
+
+TEST(Renderer, ABandIsOneShapeBetweenGaps) {
+  Figure figure = curve({0, 1, 2, 3, 4, 5}, {});
+  Series& band = figure.panels[0].series[0];
+  band.mark = Mark::band;
+  band.lower = {0, 0, 0, kNaN, 0, 0};
+  band.upper = {1, 2, 1, 1, 2, 1};
+  const std::string svg = Renderer().svg(figure);
+  EXPECT_EQ(std::count(svg.begin(), svg.end(), 'Z'), 2);
+  // No seam between its parts: all of what is within it has its colour.
+  const cv::Mat image = draw(figure);
+  EXPECT_GT(ink_in(image, Ink::blue, {0.2, 0.6, 0.15, 0.1}), 0.99 * 0.15 * 0.1 * image.total());
 }
 
 TEST(Renderer, GivesTheSameBytesAgain) {

@@ -67,4 +67,11 @@ void StageTimer::begin(Stage stage) {
   ++profile_->account(stage).entries;
 }
 
+SolveTimer::~SolveTimer() {
+  const Profile* const profile = Profile::of_thread();
+  if (profile == nullptr || !profile->take_solve_) return;
+  solve_.seconds = std::chrono::duration<double>(Profile::Clock::now() - begin_).count();
+  profile->take_solve_(solve_);
+}
+
 }  // namespace foucault

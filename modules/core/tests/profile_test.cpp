@@ -49,6 +49,25 @@ TEST(Profile, TimeCountsForTheInnermostTimer) {
   EXPECT_NEAR(seconds_of(times, Stage::preintegrate), 0.04, 0.02);
 }
 
+TEST(Profile, TellsOfOptimizationsToWhoAsks) {
+  { const SolveTimer nobody(1, 2); }
+  Profile profile;
+  { const SolveTimer not_yet(1, 2); }
+  std::vector<Solve> told;
+  profile.tell_solves([&](const Solve& solve) { told.push_back(solve); });
+  {
+    SolveTimer timer(7, 20);
+    timer.iterated();
+    timer.iterated(3);
+    work(0.01);
+  }
+  ASSERT_EQ(told.size(), 1u);
+  EXPECT_EQ(told[0].t_ns, 7);
+  EXPECT_EQ(told[0].nodes, 20u);
+  EXPECT_EQ(told[0].iterations, 4);
+  EXPECT_GE(told[0].seconds, 0.0099);
+}
+
 TEST(Profile, StagesAddUpToTheCpuTime) {
   const double before = process_cpu_s();
   Profile profile;

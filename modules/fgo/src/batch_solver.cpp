@@ -81,8 +81,8 @@ class BatchSolver {
     state::NodeVector damping;
   };
 
-  bool plain_steps();
-  void damped_steps();
+  bool plain_steps(SolveTimer& effort);
+  void damped_steps(SolveTimer& effort);
   bool take_if_better(double predicted, double& share);
   double step();
   double cost(const States& at) const;
@@ -233,13 +233,14 @@ double BatchSolver::step() {
 
 void BatchSolver::optimize() {
   const StageTimer timer(Stage::solve);
+  SolveTimer effort(chain_.nodes.back().t_ns, at_.x.size());
   cost_ = cost(at_);
   if (!std::isfinite(cost_))
     throw std::runtime_error("the factor graph could not be solved: its cost is not finite");
   region_.reset();
-  if (plain_steps()) return;
+  if (plain_steps(effort)) return;
   region_.emplace();
-  damped_steps();
+  damped_steps(effort);
   region_.reset();
 }
 
@@ -248,8 +249,9 @@ void BatchSolver::optimize() {
 /// e^2 of the change. Not so if nearly all of the change was in directions that are linear, as when
 /// the biases of a forward run jump from node to node by many sigmas of their drift: a change that
 /// exceeds what is left says nothing of the others.
-bool BatchSolver::plain_steps() {
+bool BatchSolver::plain_steps(SolveTimer& effort) {
   for (int64_t i = 0; i < options_.max_iterations; ++i) {
+    effort.iterated();
     const double predicted = step();
     const double before = cost_;
     double share = 0;
@@ -263,8 +265,9 @@ bool BatchSolver::plain_steps() {
 }
 
 /// Of a damped step the model holds, too.
-void BatchSolver::damped_steps() {
+void BatchSolver::damped_steps(SolveTimer& effort) {
   for (int64_t i = 0; i < kDampedIterations * options_.max_iterations; ++i) {
+    effort.iterated();
     const double predicted = step();
     const double before = cost_;
     double share = 0;

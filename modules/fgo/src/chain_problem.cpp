@@ -3,6 +3,7 @@
 #include <ceres/iteration_callback.h>
 #include <ceres/solver.h>
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -28,6 +29,11 @@ ceres::Solver::Options solver_options(const FgoOptions& options, std::size_t nod
   solver.num_threads = 1;
   solver.logging_type = ceres::SILENT;
   return solver;
+}
+
+/// The first summary is of the start.
+int64_t iterations(const ceres::Solver::Summary& summary) {
+  return std::max<int64_t>(0, static_cast<int64_t>(summary.iterations.size()) - 1);
 }
 
 /// Stops when the step that was taken is known to be the last one that matters. If the quadratic
@@ -82,20 +88,23 @@ void ChainProblem::add(ObservationFactor& observation) {
   problem_.AddResidualBlock(&observation, loss_, with_border({blocks_.back().data()}));
 }
 
-void ChainProblem::optimize(const FgoOptions& options) {
+int64_t ChainProblem::optimize(const FgoOptions& options) {
   StopWhenModelHolds stop;
   ceres::Solver::Options solver = solver_options(options, size());
   solver.callbacks.push_back(&stop);
   ceres::Solver::Summary summary;
   ceres::Solve(solver, &problem_, &summary);
+  int64_t taken = iterations(summary);
   if (summary.termination_type == ceres::NO_CONVERGENCE) {
     solver.callbacks.clear();  // of a damped step the model holds, too
     solver.initial_trust_region_radius = kDampedRadius;
     solver.max_num_iterations *= kDampedIterations;
     ceres::Solve(solver, &problem_, &summary);
+    taken += iterations(summary);
   }
   if (!summary.IsSolutionUsable())
     throw std::runtime_error("the factor graph could not be solved: " + summary.message);
+  return taken;
 }
 
 }  // namespace foucault::fgo

@@ -3,6 +3,7 @@
 #include <ceres/loss_function.h>
 #include <ceres/problem.h>
 
+#include <cstdint>
 #include <deque>
 
 #include "foucault/fgo/fgo_options.h"
@@ -27,9 +28,9 @@ class ChainProblem {
   /// An observation at the last node.
   void add(ObservationFactor& observation);
 
-  /// Solves from the states that the nodes have.
+  /// Solves from the states that the nodes have; gives the number of iterations.
   /// Throws std::runtime_error if that fails.
-  void optimize(const FgoOptions& options);
+  int64_t optimize(const FgoOptions& options);
 
   state::NodeState state(std::size_t k) const { return read_block(blocks_[k].data()); }
   const state::SlowVector& slow() const { return slow_; }

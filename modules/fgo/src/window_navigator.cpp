@@ -70,6 +70,7 @@ void WindowNavigator::loosen(const state::NodeMatrix& added) {
 std::unique_ptr<measurement::Navigator> WindowNavigator::ahead(double scale) const {
   const Prediction now = prediction();
   auto copy = std::make_unique<WindowNavigator>(options_, context_.model, noise_, context_.layout);
+  copy->is_trial_ = true;
   copy->context_.frame = context_.frame;
   copy->slow_ = slow_;
   copy->rates_ = rates_;
@@ -152,9 +153,12 @@ void WindowNavigator::add_node(const state::NodeState& x,
 /// The newest node has changed; all before it are linearized. After the last round nothing is
 /// integrated again: its elimination would be that of the factor before.
 void WindowNavigator::solve() {
+  std::optional<SolveTimer> effort;
+  if (!is_trial_) effort.emplace(nodes_.back().t_ns, nodes_.size());
   std::size_t from = nodes_.size() - 1;
   for (int round = 1; from < nodes_.size(); ++round) {
-    optimize(from);
+    const int64_t iterations = optimize(from);
+    if (effort) effort->iterated(iterations);
     linearize(from);
     carry_back(from);
     if (round == kRounds) break;
@@ -164,8 +168,9 @@ void WindowNavigator::solve() {
   covariance_ = covariance(nodes_.back().past.information);
 }
 
-/// Solves for the nodes from `from` on, for the settled one before them, and for the border.
-void WindowNavigator::optimize(std::size_t from) {
+/// Solves for the nodes from `from` on, for the settled one before them, and for the border; gives
+/// the number of iterations.
+int64_t WindowNavigator::optimize(std::size_t from) {
   const StageTimer timer(Stage::solve);
   const std::size_t base = from > 0 ? from - 1 : 0;
   const Linearization& past = nodes_[base].past;
@@ -176,9 +181,10 @@ void WindowNavigator::optimize(std::size_t from) {
     if (k < from) continue;  // its observations are in the prior
     for (ObservationFactor& observation : nodes_[k].observations) problem.add(observation);
   }
-  problem.optimize(options_);
+  const int64_t iterations = problem.optimize(options_);
   for (std::size_t k = base; k < nodes_.size(); ++k) nodes_[k].x = problem.state(k - base);
   slow_ = problem.slow();
+  return iterations;
 }
 
 /// The quadratic forms of the nodes from `from` on, each at its present state.

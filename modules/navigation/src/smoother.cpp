@@ -10,7 +10,7 @@
 #include "foucault/core/hermite.h"
 #include "foucault/core/profile.h"
 #include "foucault/core/time.h"
-#include "foucault/geodesy/place.h"
+#include "foucault/measurement/gnss_position.h"
 #include "sound_epoch.h"
 
 namespace foucault::navigation {
@@ -49,14 +49,6 @@ void throw_if_unsound(const std::deque<measurement::SmoothedEpoch>& nodes) {
   }
 }
 
-state::FixResult with_postfit(const state::FixResult& forward, const state::NavState& x) {
-  state::FixResult result = forward;
-  result.postfit_n =
-      geodesy::displacement_n(x.position, result.antenna, geodesy::Place(x.position)) -
-      x.q_n_b * result.p_b_a;
-  return result;
-}
-
 }  // namespace
 
 state::Epoch between(const measurement::SmoothedEpoch& begin, const measurement::SmoothedEpoch& end,
@@ -90,6 +82,20 @@ void Smoother::Keeper::fix(const state::FixResult& result) {
 }
 
 void Smoother::Keeper::notice(const state::Notice& notice) { kept_.emplace_back(notice); }
+
+/// With the lever arm and the clocks that were found. How the antenna swings and accelerates in
+/// what is left of a time offset is left out.
+state::FixResult Smoother::Keeper::with_postfit(const state::FixResult& forward,
+                                                const state::NavState& x) const {
+  GnssFix fix;
+  fix.antenna = forward.antenna;
+  fix.p_b_a = forward.p_b_a;
+  if (first_fix_ns_) fix.since_first_s = seconds_between(*first_fix_ns_, forward.t_ns);
+  state::FixResult result = forward;
+  result.postfit_n =
+      measurement::GnssPosition(fix).linearize(x, measurement::MeanMotion{}, layout_).r;
+  return result;
+}
 
 const measurement::SmoothedEpoch* Smoother::Keeper::node_at(std::size_t node) const {
   return node - nodes_gone_ < nodes_.size() ? &nodes_[node - nodes_gone_] : nullptr;
@@ -151,8 +157,13 @@ void Smoother::Keeper::give_out() {
 Smoother::Smoother(std::unique_ptr<measurement::Navigator> navigator,
                    measurement::Recording& recording, alignment::Aligner aligner,
                    const NavigationRunOptions& options, state::Sink& sink)
-    : keeper_(recording, options.rate, sink),
+    : keeper_(recording, options.rate, sink, options.layout),
       run_(std::move(navigator), std::move(aligner), options, keeper_) {}
+
+void Smoother::process(const Measurement& measurement) {
+  if (const auto* fix = std::get_if<GnssFix>(&measurement)) keeper_.first_fix(fix->t_ns);
+  run_.process(measurement);
+}
 
 void Smoother::finish() {
   run_.finish();

@@ -62,6 +62,7 @@ class FakeRecorder : public testing::FakeNavigator, public measurement::Recordin
 
   double variance = 1;
   bool in_parts = false;
+  state::SlowVector slow;
 
  private:
   std::deque<SmoothedEpoch> nodes_before(std::size_t end) {
@@ -70,6 +71,8 @@ class FakeRecorder : public testing::FakeNavigator, public measurement::Recordin
       nodes.push_back(node(0, variance));
       nodes.back().state.t_ns = stamps_[given_out_];
       nodes.back().state.position = testing::LocalFrame(kPlace).to_geodetic(Vector3d(10, 0, 0));
+      nodes.back().state.velocity_n = Vector3d(0, 5, 0);
+      nodes.back().state.slow = slow;
     }
     return nodes;
   }
@@ -89,10 +92,13 @@ class SmootherTest : public ::testing::Test {
     auto recorder = std::make_unique<FakeRecorder>(log_);
     recorder->variance = variance;
     recorder->in_parts = in_parts;
+    recorder->slow = slow_;
+    NavigationRunOptions run_options;
+    run_options.layout = layout_;
     const std::unique_ptr<state::Estimator> smoother =
         make_smoother(std::move(recorder),
                       alignment::Aligner(options, imu::imu_preset("ADIS16465"), state::Mounting{}),
-                      NavigationRunOptions{}, sink);
+                      run_options, sink);
     smoother->process(increment_between(0, 10));
     smoother->process(fix_at(10));
     smoother->process(fix_at(50));
@@ -103,6 +109,8 @@ class SmootherTest : public ::testing::Test {
 
   testing::Log log_;
   testing::RecordingSink sink_;
+  state::Layout layout_;
+  state::SlowVector slow_;
 };
 
 TEST_F(SmootherTest, GivesEverythingOutAtTheEndWithPostfitsOfTheSmoothedSolution) {
@@ -118,6 +126,22 @@ TEST_F(SmootherTest, GivesPartsOutWhenTheyAreSettled) {
   EXPECT_THAT(sink_.epochs_ms, ::testing::ElementsAre(10, 50));
   ASSERT_EQ(sink_.fixes.size(), 1u);
   EXPECT_NEAR(sink_.fixes[0].postfit_n.x(), -10, 1e-6);
+}
+
+/// Half a metre of arm that was not told, and clocks that are 20 ms apart at the first fix and
+/// drift.
+TEST_F(SmootherTest, PostfitsAreWithTheLeverArmAndTheClocksThatWereFound) {
+  layout_.add(state::block::lever_arm, 1);
+  layout_.add(state::block::time_offset, 1);
+  layout_.add(state::block::time_drift, 1);
+  slow_ = state::SlowVector::Zero(layout_.slow_size());
+  slow_.head<3>() = Vector3d(0.5, 0, 0);
+  slow_.tail<2>() << 0.02, 0.5;
+  run(1);
+  ASSERT_EQ(sink_.fixes.size(), 1u);
+  EXPECT_NEAR(sink_.fixes[0].postfit_n.x(), -10.5, 1e-6);
+  const double since_first = 0.04;
+  EXPECT_NEAR(sink_.fixes[0].postfit_n.y(), 5 * (0.02 + 0.5 * since_first), 1e-6);
 }
 
 /// Of the forward run a sink that asks for it is told at once.

@@ -176,6 +176,7 @@ plot::Figure ablation_bars(const std::vector<AblationBar>& bars, const MethodOrd
 struct EvaluationReport {
   std::string title = "Outage evaluation";
   std::string subtitle;
+  std::vector<page::Link> links;  ///< pages beside this one
   MethodOrder methods;
   std::vector<std::string> remarks;  ///< paragraphs at the top: what was done, what was not
   std::vector<page::KeyNumber> key_numbers;

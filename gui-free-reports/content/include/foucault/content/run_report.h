@@ -3,8 +3,10 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "foucault/core/consistency.h"
+#include "foucault/core/profile.h"
 #include "foucault/page/report_page.h"
 #include "foucault/state/interfaces.h"
 #include "foucault/state/result.h"
@@ -15,14 +17,12 @@ namespace foucault::content {
 
 /// What a run was, in words.
 struct RunLabels {
-  std::string recording;  ///< name of the log
-  std::string method;     ///< e.g. "refined"
-  std::string version;    ///< of the program
-  std::string command;    ///< the command line; may be empty
-  std::string config;     ///< the effective configuration, YAML
-  /// Root mean squares in the figures are over what is shown from here on [s since the start]: the
-  /// settling time can be left out.
-  double statistics_from_s = 0;
+  std::string recording;               ///< name of the log
+  std::string method;                  ///< e.g. "refined"
+  std::string version;                 ///< of the program
+  std::string command;                 ///< the command line; may be empty
+  std::string config;                  ///< the effective configuration, YAML
+  std::vector<page::Link> links = {};  ///< pages beside this one
 };
 
 /// What the innovations of one kind of measurement beside positions amount to.
@@ -46,6 +46,9 @@ class RunReport : public state::Sink {
 
   /// The first stamp of the recording: times in the report count from there.
   void start(int64_t t_ns);
+
+  /// Statistics are over what comes from there on: the settling time can be left out.
+  void start_statistics(int64_t t_ns);
 
   void epoch(const state::Epoch& epoch) override;
   void fix(const state::FixResult& fix) override;
@@ -71,6 +74,12 @@ class RunReport : public state::Sink {
 
   /// End of an IMU sample's interval, for the sampling statistics; measurement() does it.
   void imu_stamp(int64_t t_ns);
+
+  /// Of a factor graph: an optimization.
+  void solve(const Solve& solve);
+
+  /// Where the time went.
+  void stages(const std::vector<StageTime>& stages);
 
   /// A stretch in which fixes were withheld on purpose; shaded in every figure over time.
   void outage(int64_t begin_ns, int64_t end_ns);

@@ -51,9 +51,16 @@ struct Listing {
   std::string text;
 };
 
+/// Another page that belongs to this one.
+struct Link {
+  std::string text;
+  std::string target;  ///< relative to the folder of the page
+};
+
 struct ReportPage {
   std::string title;
   std::string subtitle;
+  std::vector<Link> links = {};
   /// The stamp at which the axes over time begin, if they have one: cursors tell the clock there.
   std::optional<int64_t> start_ns = {};
   std::optional<Banner> banner = {};

@@ -31,7 +31,8 @@ class Renderer {
   /// The figure as a PNG file's content. Throws DataError if columns of a series differ in length.
   std::vector<unsigned char> png(const Figure& figure);
 
-  /// The same as vectors, for papers.
+  /// The same as vectors, for papers: 85 mm wide, a column, or 178 mm if it has panels side by
+  /// side; numbers at the axes have 7 pt. Without titles, which are a caption's.
   std::string svg(const Figure& figure);
 
  private:

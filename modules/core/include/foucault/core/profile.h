@@ -4,6 +4,8 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <utility>
 #include <vector>
 
 /// Where the time of a run goes, stage by stage.
@@ -50,6 +52,14 @@ struct StageTime {
   int64_t entries = 0;  ///< how often the stage was entered
 };
 
+/// One optimization.
+struct Solve {
+  int64_t t_ns = 0;       ///< of the newest node
+  std::size_t nodes = 0;  ///< that it was over
+  int64_t iterations = 0;
+  double seconds = 0;  ///< on the clock of the wall
+};
+
 /// CPU time of the process from its start on [s].
 double process_cpu_s();
 
@@ -71,8 +81,12 @@ class Profile {
   /// What there is up to now, in the order of Stage, without stages that never were.
   std::vector<StageTime> times();
 
+  /// Called for every optimization from now on.
+  void tell_solves(std::function<void(const Solve&)> take) { take_solve_ = std::move(take); }
+
  private:
   friend class StageTimer;
+  friend class SolveTimer;
   using Clock = std::chrono::steady_clock;
 
   static constexpr std::chrono::milliseconds kWindow{10};
@@ -96,6 +110,7 @@ class Profile {
   Clock::time_point since_;
   Clock::time_point window_begin_;
   double window_begin_cpu_s_;
+  std::function<void(const Solve&)> take_solve_;
 };
 
 /// Counts the time of its life for a stage, less that of timers within.
@@ -115,6 +130,21 @@ class StageTimer {
 
   Profile* profile_;
   Stage outer_ = Stage::other;
+};
+
+/// Lives as long as an optimization and tells the thread's profile of it, if anyone asked.
+class SolveTimer {
+ public:
+  SolveTimer(int64_t t_ns, std::size_t nodes) : solve_{t_ns, nodes, 0, 0} {}
+  ~SolveTimer();
+  SolveTimer(const SolveTimer&) = delete;
+  SolveTimer& operator=(const SolveTimer&) = delete;
+
+  void iterated(int64_t times = 1) { solve_.iterations += times; }
+
+ private:
+  Solve solve_;
+  Profile::Clock::time_point begin_ = Profile::Clock::now();
 };
 
 }  // namespace foucault

@@ -2,6 +2,7 @@
 
 #include <ceres/loss_function.h>
 
+#include <cstdint>
 #include <deque>
 #include <memory>
 #include <optional>
@@ -76,7 +77,7 @@ class WindowNavigator final : public measurement::Navigator {
   Prediction prediction() const;
   void add_node(const state::NodeState& x, const preintegration::Preintegration& pre);
   void solve();
-  void optimize(std::size_t from);
+  int64_t optimize(std::size_t from);
   void linearize(std::size_t from);
   void carry_back(std::size_t from);
   std::size_t first_unsettled();
@@ -100,6 +101,7 @@ class WindowNavigator final : public measurement::Navigator {
   ImuInterval open_;                                         ///< its increments
   imu::RecentRates rates_{imu::kLeverArmRateMemory};
   state::StateMatrix covariance_;  ///< of the newest node and the border
+  bool is_trial_ = false;          ///< drives ahead of another, which tells what solving takes
 };
 
 }  // namespace foucault::fgo

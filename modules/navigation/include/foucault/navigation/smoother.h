@@ -2,6 +2,7 @@
 
 #include <deque>
 #include <memory>
+#include <optional>
 #include <variant>
 #include <vector>
 
@@ -27,11 +28,12 @@ state::Epoch between(const measurement::SmoothedEpoch& begin, const measurement:
 /// not finite; nothing has been given out then.
 class Smoother : public Run {
  public:
-  /// `recording` is what `navigator` leaves; both live as long as this.
+  /// `recording` is what `navigator` leaves; both live as long as this. Residuals of fixes are by
+  /// the layout of the options.
   Smoother(std::unique_ptr<measurement::Navigator> navigator, measurement::Recording& recording,
            alignment::Aligner aligner, const NavigationRunOptions& options, state::Sink& sink);
 
-  void process(const Measurement& measurement) override { run_.process(measurement); }
+  void process(const Measurement& measurement) override;
   void observe(int64_t t_ns, const measurement::ObservationPtr& observation) override {
     run_.observe(t_ns, observation);
   }
@@ -41,11 +43,17 @@ class Smoother : public Run {
   /// Keeps what the forward run gives out, in its order.
   class Keeper : public state::Sink {
    public:
-    Keeper(measurement::Recording& recording, EpochRate rate, state::Sink& sink)
+    Keeper(measurement::Recording& recording, EpochRate rate, state::Sink& sink,
+           const state::Layout& layout)
         : recording_(recording),
           rate_(rate),
           sink_(sink),
+          layout_(layout),
           forward_(dynamic_cast<state::ForwardSink*>(&sink)) {}
+    /// Of the recording, used or not.
+    void first_fix(int64_t t_ns) {
+      if (!first_fix_ns_) first_fix_ns_ = t_ns;
+    }
     void epoch(const state::Epoch& epoch) override;
     void fix(const state::FixResult& result) override;
     void observation(const state::ObservationResult& result) override {
@@ -78,6 +86,8 @@ class Smoother : public Run {
     measurement::Recording& recording_;
     EpochRate rate_;
     state::Sink& sink_;
+    state::Layout layout_;
+    std::optional<int64_t> first_fix_ns_;
     state::ForwardSink* forward_;  ///< the same, if it is one
     using Kept = std::variant<NodeEpoch, BetweenEpoch, NodeFix, state::FixResult,
                               state::ObservationResult, state::Notice>;
@@ -86,6 +96,7 @@ class Smoother : public Run {
     bool give(const Kept& kept);
     /// Null if it is not there yet.
     const measurement::SmoothedEpoch* node_at(std::size_t node) const;
+    state::FixResult with_postfit(const state::FixResult& forward, const state::NavState& x) const;
 
     std::deque<Kept> kept_;
     std::deque<measurement::SmoothedEpoch> nodes_;  ///< smoothed; a few before what is kept
