@@ -1,8 +1,27 @@
 #include "foucault/ekf/ekf.h"
 
 #include "foucault/core/profile.h"
+#include "foucault/core/so3.h"
 
 namespace foucault::ekf {
+namespace {
+
+using PlaceRows = decltype(state::Linearized::H);
+
+/// The state was moved, and H with it: errors of the position become those that make H times the
+/// errors what it was before.
+void keep_place(const PlaceRows& before, const state::StateVector& moved, const PlaceRows& after,
+                state::StateMatrix& covariance) {
+  PlaceRows change = before - after;
+  const auto reset = so3::right_jacobian(state::part(moved, state::block::attitude)).inverse();
+  state::columns_of(change, state::block::attitude) =
+      state::columns_of(before, state::block::attitude) * reset -
+      state::columns_of(after, state::block::attitude);
+  state::rows_of(covariance, state::block::position) += (change * covariance).eval();
+  state::columns_of(covariance, state::block::position) += (covariance * change.transpose()).eval();
+}
+
+}  // namespace
 
 void EkfOptions::fields(ConfigFields& f) {
   f.number("cov_interval_s", cov_interval_s, {0, 1}, "longest step of the covariance");
@@ -73,7 +92,10 @@ state::Innovation EkfNavigator::innovation(const measurement::Observation& obser
 void EkfNavigator::update(const measurement::ObservationPtr& observation) {
   catch_up();
   const StageTimer timer(Stage::update);
-  state::kalman_update(linearize(*observation), state_, covariance_);
+  const state::Linearized z = linearize(*observation);
+  const state::StateVector moved = state::kalman_update(z, state_, covariance_);
+  if (observation->is_place() && state_.slow.size() > 0)
+    keep_place(z.H, moved, linearize(*observation).H, covariance_);
   R_n_b_ = state_.q_n_b.toRotationMatrix();
   covered_ = state_;
 }

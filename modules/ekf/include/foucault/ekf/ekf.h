@@ -22,6 +22,13 @@ class EkfOptions : public Configurable {
 /// The biases' nominal values stay as they are between updates (their turn-on values do not decay);
 /// their errors are the Gauss-Markov processes of MarkovBias, those of slow blocks as the layout
 /// has them.
+///
+/// A fix tells where the antenna is, p + C l. An update that corrects C leaves a covariance of p and
+/// l that fits the old C: the next fix would find the antenna elsewhere than this one, by the
+/// correction times the error of l, and tell of l as if the vehicle had turned. So, where slow
+/// blocks are estimated, the covariance of p is moved along, H(x+) d+ = H(x) d: what the fix told of
+/// the antenna's place stays told. (Errors of the antenna's place, of C and of l would be
+/// coordinates in which nothing has to be moved.)
 class EkfNavigator : public measurement::Navigator {
  public:
   explicit EkfNavigator(const imu::ImuNoise& imu, const state::Layout& layout = {},
