@@ -77,13 +77,19 @@ class Store : public testing::Test {
   }
   static void TearDownTestSuite() { delete folder_; }
 
-  static std::string evaluate() {
-    return "\"$0\" evaluate ../log?.rawlog --methods ekf,refined --store store --out out " +
-           std::string(kOutages);
+  static std::string evaluate(const std::string& methods = "ekf,rts") {
+    return "\"$0\" evaluate ../log?.rawlog --methods " + methods + " --store store --out out " +
+           kOutages;
   }
   static std::string tune() {
     return "\"$0\" tune ../log?.rawlog --config ../grid.yaml --store store --out out --jobs 1";
   }
+
+  static std::string command(const std::string& which) {
+    if (which == kSlow) return evaluate("ekf,refined");
+    return which == "tune" ? tune() : evaluate();
+  }
+  static constexpr const char* kSlow = "evaluate-slow";  ///< 3 s instead of half a second
 
   /// Runs a script in a folder.
   static Outcome in(const std::string& name, const std::string& script) {
@@ -95,7 +101,7 @@ class Store : public testing::Test {
   static std::map<std::string, std::string> whole(const std::string& which) {
     const std::string name = "whole-" + which;
     if (!fs::exists(*folder_ / name)) {
-      const Outcome made = in(name, which == "tune" ? tune() : evaluate());
+      const Outcome made = in(name, command(which));
       EXPECT_EQ(made.exit_code, 0) << made.err;
     }
     return timeless_files(*folder_ / (name + "/out"));
@@ -114,8 +120,7 @@ class Store : public testing::Test {
 
   /// The merge computes nothing, and equals the single process.
   static void expect_merge_as_whole(const std::string& name, const std::string& which) {
-    const std::string command = which == "tune" ? tune() : evaluate();
-    const Outcome merged = in(name, command);
+    const Outcome merged = in(name, command(which));
     EXPECT_EQ(merged.exit_code, 0) << merged.err;
     EXPECT_THAT(merged.out, HasSubstr("0 runs computed"));
     expect_as_whole(name, which);
@@ -133,7 +138,7 @@ bool has_programs(const std::string& names) {
 TEST_F(Store, WorkersAddUpToTheSingleProcess) {
   for (const char* which : {"evaluate", "tune"}) {
     const std::string name = std::string("workers-") + which;
-    const std::string command = std::string(which) == "tune" ? tune() : evaluate();
+    const std::string command = Store::command(which);
     const Outcome none = in(name, command + " --no-compute");
     EXPECT_EQ(none.exit_code, 1);
     EXPECT_THAT(none.err, HasSubstr("there is no store"));
@@ -248,7 +253,7 @@ TEST_F(Store, AHiddenOneGoesOnceTheResultsAreWritten) {
 TEST_F(Store, KilledAtRandomMomentsTheResultIsTheSame) {
   for (const char* which : {"evaluate", "tune"}) {
     const std::string name = std::string("killed-") + which;
-    const std::string command = std::string(which) == "tune" ? tune() : evaluate();
+    const std::string command = Store::command(which);
     std::mt19937 rng{42};
     std::map<std::string, ino_t> before;
     int kills = 0;
@@ -273,7 +278,7 @@ TEST_F(Store, GnuParallel) {
   if (!has_programs("parallel")) GTEST_SKIP() << "no GNU parallel here: package parallel";
   for (const char* which : {"evaluate", "tune"}) {
     const std::string name = std::string("parallel-") + which;
-    const std::string command = std::string(which) == "tune" ? tune() : evaluate();
+    const std::string command = Store::command(which);
     const Outcome worked =
         in(name, "export FOUCAULT=\"$0\"; parallel -j2 '" +
                      std::regex_replace(command, std::regex("\"\\$0\""), "$FOUCAULT") +
@@ -287,7 +292,7 @@ TEST_F(Store, MpiRanks) {
   if (!has_programs("mpirun")) GTEST_SKIP() << "no mpirun here: package openmpi-bin";
   for (const char* which : {"evaluate", "tune"}) {
     const std::string name = std::string("mpi-") + which;
-    const std::string command = std::string(which) == "tune" ? tune() : evaluate();
+    const std::string command = Store::command(which);
     const Outcome worked =
         in(name, "mpirun --allow-run-as-root --oversubscribe --bind-to none -np 2 " + command +
                      " --shard auto");
@@ -347,25 +352,22 @@ TEST_F(Store, SlurmArrayWithANodeThatDies) {
     GTEST_SKIP() << "no Slurm here: packages slurmctld slurmd slurm-client munge";
   }
   const Slurm slurm;
-  for (const char* which : {"evaluate", "tune"}) {
+  for (const char* which : {kSlow, "tune"}) {
     const fs::path here = *folder_ / (std::string("slurm-") + which);
     fs::create_directories(here);
-    const std::string command =
-        std::regex_replace(std::string(which) == "tune" ? tune() : evaluate(),
-                           std::regex("\"\\$0\""), "\"$FOUCAULT\"");
-    const Outcome submitted = slurm.submit(here, command + " --shard auto", 4);
+    const std::string with_path =
+        std::regex_replace(command(which), std::regex("\"\\$0\""), "\"$FOUCAULT\"");
+    const Outcome submitted = slurm.submit(here, with_path + " --shard auto", 4);
     ASSERT_EQ(submitted.exit_code, 0) << submitted.err;
   }
-  const auto is_under_way = [&](const char* name) {
-    return records_in(*folder_ / name / "store").size() > 10;
+  const auto is_under_way = [&](const std::string& which) {
+    return records_in(*folder_ / ("slurm-" + which + "/store")).size() > 10;
   };
-  ASSERT_TRUE(
-      wait_until([&] { return is_under_way("slurm-evaluate") && is_under_way("slurm-tune"); }));
+  ASSERT_TRUE(wait_until([&] { return is_under_way(kSlow) && is_under_way("tune"); }));
   EXPECT_EQ(slurm.kill_node("n2").exit_code, 0);
   EXPECT_TRUE(wait_until([&] { return slurm.is_empty(); }));
   EXPECT_GT(slurm.started(), 2 * 4) << "tasks of the node begin again on the other one";
-  expect_merge_as_whole("slurm-evaluate", "evaluate");
-  expect_merge_as_whole("slurm-tune", "tune");
+  for (const std::string which : {kSlow, "tune"}) expect_merge_as_whole("slurm-" + which, which);
 }
 
 }  // namespace

@@ -2,8 +2,9 @@
 # Measures what the store is for, with the built program, in a temporary folder:
 #   store.sh workers FOUCAULT [COUNT]   workers (8) on one store against one process on all cores:
 #                                       runs computed twice, wall time over that of the process
-#   store.sh kills FOUCAULT [COUNT]     the only worker killed at random moments (50): whether the
-#                                       result is that of a process nobody killed, runs done twice
+#   store.sh kills FOUCAULT [COUNT]     the only worker killed at random moments (50), within the
+#                                       third of the time that it takes: whether the result is that
+#                                       of a process nobody killed, runs done twice
 set -euo pipefail
 
 verb=$1
@@ -24,7 +25,12 @@ make_logs() {
   done
 }
 
-evaluate() { "$foucault" evaluate log*.rawlog --methods ekf,refined "${outages[@]}" --no-report "$@"; }
+# In the place of the shell, so that a signal reaches it.
+exec_evaluate() {
+  exec "$foucault" evaluate log*.rawlog --methods ekf,refined "${outages[@]}" --no-report "$@"
+}
+
+evaluate() { (exec_evaluate "$@"); }
 
 # Wall time of a command, and CPU time with that of its children.
 seconds() { (TIMEFORMAT='%R s (CPU %U s)' && time "$@" >/dev/null) 2>&1; }
@@ -50,18 +56,22 @@ workers() {
 }
 
 # What a record is told apart by: computed again, it is another file.
-records() { find runs -type f -name '*[0-9a-f]' -printf '%f %i\n' 2>/dev/null | sort; }
+records() {
+  [[ ! -d runs ]] || find runs -type f -name '*[0-9a-f]' -printf '%f %i\n' | sort
+}
 
 kills() {
-  local count=$1 i pid twice=0
+  local count=$1 i pid begin whole twice=0
   make_logs 4 300
+  begin=$EPOCHREALTIME
   evaluate --out alone --jobs 1 >/dev/null
+  whole=$(echo "$EPOCHREALTIME - $begin" | bc)
   RANDOM=42
-  records >before.txt
+  : >before.txt
   for i in $(seq "$count"); do
-    evaluate --store runs --out all --jobs 1 >/dev/null &
+    exec_evaluate --store runs --out all --jobs 1 >/dev/null &
     pid=$!
-    sleep "$(echo "scale=3; $RANDOM / 32768" | bc)"
+    sleep "$(echo "scale=3; $whole / 3 * $RANDOM / 32768" | bc)"
     kill -KILL "$pid" 2>/dev/null || true
     wait "$pid" 2>/dev/null || true
     records >after.txt
