@@ -8,7 +8,9 @@
 #include "foucault/core/error.h"
 #include "foucault/ekf/rts.h"
 #include "foucault/fgo/window_navigator.h"
+#include "foucault/measurement/navigator.h"
 #include "foucault/navigation/smoother.h"
+#include "foucault/preintegration/earth.h"
 
 namespace foucault::methods {
 namespace {
