@@ -260,8 +260,9 @@ TEST(RunReport, TheSolverIsShownWhereItSolvesForEachEpoch) {
   EXPECT_EQ(reason_not_shown(report.page(), kWhat), "the method does not iterate");
 
   report.solve({nanoseconds(1), 1617, 4, 0.2});
-  EXPECT_NE(reason_not_shown(report.page(), kWhat).find("at once"), std::string::npos);
-  const Table& once = section_of(report.page(), "Processing").tables.at(0);
+  const ReportPage whole = report.page();
+  EXPECT_NE(reason_not_shown(whole, kWhat).find("at once"), std::string::npos);
+  const Table& once = section_of(whole, "Processing").tables.at(0);
   EXPECT_EQ(once.rows.at(0), (std::vector<std::string>{"Nodes", "1617", "1617", ""}));
   EXPECT_EQ(once.rows.at(1).at(1), "4.00");
 
@@ -276,7 +277,8 @@ TEST(RunReport, TheSolverIsShownWhereItSolvesForEachEpoch) {
 TEST(RunReport, TheTimeOfStagesIsShown) {
   RunReport report(kLabels, state::Mounting{});
   report.stages({{Stage::read, 0.25, 1}, {Stage::solve, 0.75, 1}});
-  const Table& table = section_of(report.page(), "Processing").tables.at(0);
+  const ReportPage page = report.page();
+  const Table& table = section_of(page, "Processing").tables.at(0);
   EXPECT_EQ(table.rows.at(1), (std::vector<std::string>{"solve", "0.750 s", "75.0 %"}));
 }
 
