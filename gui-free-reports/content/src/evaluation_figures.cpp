@@ -224,8 +224,8 @@ Figure drift_curves(const DriftCase& drift_case, const MethodOrder& order) {
   for (const MethodCurves& curves : drift_case.methods) {
     if (curves.outages.size() <= kMostCurves) continue;
     figure.caption += fmt::format(
-        " Shown are {} outages of all, evenly in the order of their drift; the RMS is of all.",
-        kMostCurves);
+        " Shown are {} outages, evenly in the order of their drift; RMS and median are of all {}.",
+        kMostCurves, curves.outages.size());
     break;
   }
   figure.height_mm = 165;
