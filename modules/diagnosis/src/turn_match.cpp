@@ -322,14 +322,19 @@ Measured TurnMatcher::offset_near(std::size_t index, const std::vector<double>& 
   return offset;
 }
 
-/// The gyroscopes' turn per the course's is 1/a, with the sigma that the residuals leave.
+/// The gyroscopes' turn per the course's. Gusts turn an aircraft without its course, bad fixes a
+/// course without the vehicle: the truth lies between the two regressions (Frisch's bounds), which
+/// count as one sigma on either side beside what the residuals leave.
 std::optional<MeasuredFactor> TurnMatcher::gentle_factor(const Moments& m, const Fit& fit) const {
-  const double xy = m(kTurn, kCourse) - m(kTurn, kArm) * fit.value[kArm];
-  if (gentle_samples_ < kEnoughGentle || !(xy > 0)) return std::nullopt;
-  const double a = xy / m(kTurn, kTurn);
-  const double residual = residual_of(m, Eigen::Vector2d(a, fit.value[kArm]));
-  const double variance = residual / static_cast<double>(gentle_samples_ - 1) / m(kTurn, kTurn);
-  return MeasuredFactor{1 / a, std::sqrt(variance) / (a * a), gentle_samples_};
+  const double turns = m(kTurn, kTurn);
+  const double courses = residual_of(m, Eigen::Vector2d(0, fit.value[kArm]));
+  const double both = m(kTurn, kCourse) - m(kTurn, kArm) * fit.value[kArm];
+  if (gentle_samples_ < kEnoughGentle || !(both > 0)) return std::nullopt;
+  const double least = both / courses, most = turns / both;
+  const double residual = residual_of(m, Eigen::Vector2d(1 / most, fit.value[kArm]));
+  const double variance = residual / static_cast<double>(gentle_samples_ - 1) / turns;
+  const double sigma = std::hypot(most * most * std::sqrt(variance), 0.5 * (most - least));
+  return MeasuredFactor{std::sqrt(least * most), sigma, gentle_samples_};
 }
 
 /// A line through the offsets of the parts.

@@ -18,7 +18,8 @@ namespace foucault::diagnosis {
 struct LevelDrive {
   std::function<double(double)> speed = [](double) { return 10.0; };   ///< [m/s] at t [s]
   std::function<double(double)> heading = [](double) { return 0.0; };  ///< [rad]
-  double bank = 0;                                                     ///< [rad], right down
+  std::function<double(double)> crab = [](double) { return 0.0; };  ///< heading less course [rad]
+  double bank = 0;                                                  ///< [rad], right down
   double seconds = 60;
   double fix_interval = 1;  ///< [s]
   double fix_sigma = 0.01;  ///< [m], each axis
@@ -89,7 +90,7 @@ struct LevelDrive {
     return speed(t) * Eigen::Vector3d(std::cos(heading(t)), std::sin(heading(t)), 0);
   }
   Eigen::Quaterniond attitude(double t) const {
-    return Eigen::AngleAxisd(heading(t), Eigen::Vector3d::UnitZ()) *
+    return Eigen::AngleAxisd(heading(t) + crab(t), Eigen::Vector3d::UnitZ()) *
            Eigen::AngleAxisd(bank, Eigen::Vector3d::UnitX());
   }
 };

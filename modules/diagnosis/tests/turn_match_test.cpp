@@ -48,6 +48,17 @@ TEST(TurnMatch, FindsTheFactorInGentleTurns) {
   EXPECT_THAT(gross_mismatch(match, 0).value_or(""), HasSubstr("no gyroscope's scale factor"));
 }
 
+/// Where it flies straight, gusts turn it twice as much as the course does.
+TEST(TurnMatch, GustsThatTurnAnAircraftAreNoScaleFactor) {
+  LevelDrive flight = winding();
+  flight.crab = [](double t) { return 0.15 * std::sin(1.1 * t); };
+  const TurnMatch match = match_of(flight);
+  EXPECT_GT(match.correlation, 0.9);
+  ASSERT_TRUE(match.gyro_factor);
+  EXPECT_GT(match.gyro_factor->value, 1.2);
+  EXPECT_FALSE(gross_mismatch(match, LevelDrive::kStart));
+}
+
 TEST(TurnMatch, NamesUnitsAxesAndClocks) {
   const auto wrong = [](double factor, double late) {
     LevelDrive drive = winding();
