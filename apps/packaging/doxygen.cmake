@@ -20,6 +20,7 @@ doxygen_add_docs(doc README.md CHANGELOG.md modules rawlog gui-free-reports apps
                  apps/examples apps/cluster
                  COMMENT "Pages of the public headers: doc/html/index.html")
 if(FOUCAULT_TESTS)
-  add_test(NAME doc COMMAND Doxygen::doxygen ${CMAKE_BINARY_DIR}/Doxyfile.doc)
+  add_test(NAME doc COMMAND Doxygen::doxygen ${CMAKE_BINARY_DIR}/Doxyfile.doc
+           WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
   set_tests_properties(doc PROPERTIES TIMEOUT 300)
 endif()
