@@ -8,15 +8,17 @@ namespace {
 
 using PlaceRows = decltype(state::Linearized::H);
 
-/// The state was moved, and H with it: errors of the position become those that make H times the
-/// errors what it was before.
-void keep_place(const PlaceRows& before, const state::StateVector& moved, const PlaceRows& after,
-                state::StateMatrix& covariance) {
-  PlaceRows change = before - after;
+/// The attitude was corrected, and with it where the arm points: errors of the position become
+/// those that leave the antenna where it was.
+void keep_antenna(const PlaceRows& before, const state::StateVector& moved, const PlaceRows& after,
+                  const state::SlowBlock& arm, state::StateMatrix& covariance) {
   const auto reset = so3::right_jacobian(state::part(moved, state::block::attitude)).inverse();
-  state::columns_of(change, state::block::attitude) =
-      state::columns_of(before, state::block::attitude) * reset -
-      state::columns_of(after, state::block::attitude);
+  const Eigen::Matrix3d by_attitude = state::columns_of(before, state::block::attitude) * reset -
+                                      state::columns_of(after, state::block::attitude);
+  const Eigen::Matrix3d by_arm = state::columns_of(before, arm) - state::columns_of(after, arm);
+  PlaceRows change = PlaceRows::Zero(3, covariance.cols());
+  state::columns_of(change, state::block::attitude) = by_attitude;
+  state::columns_of(change, arm) = by_arm;
   state::rows_of(covariance, state::block::position) += (change * covariance).eval();
   state::columns_of(covariance, state::block::position) += (covariance * change.transpose()).eval();
 }
@@ -94,8 +96,9 @@ void EkfNavigator::update(const measurement::ObservationPtr& observation) {
   const StageTimer timer(Stage::update);
   const state::Linearized z = linearize(*observation);
   const state::StateVector moved = state::kalman_update(z, state_, covariance_);
-  if (observation->is_place() && state_.slow.size() > 0)
-    keep_place(z.H, moved, linearize(*observation).H, covariance_);
+  const state::SlowBlock* arm = noise_.layout.find(state::block::lever_arm);
+  if (arm && observation->is_place())
+    keep_antenna(z.H, moved, linearize(*observation).H, *arm, covariance_);
   R_n_b_ = state_.q_n_b.toRotationMatrix();
   covered_ = state_;
 }

@@ -176,7 +176,6 @@ TEST(Ekf, CorrectingTheAttitudeTellsNothingOfTheLeverArm) {
   Fixture f;
   state::Layout layout;
   layout.add(state::block::lever_arm, 0.3);
-  layout.add(state::block::time_offset, 0.1);
   const auto sigmas_after = [&](int fixes) {
     Trip& trip = f.trip;
     state::NodeVector sigmas = initial_sigmas();
