@@ -207,6 +207,7 @@ void forget_peak() { std::ofstream("/proc/self/clear_refs") << 5; }
 /// Two methods on recordings of their own, seven outages of 60 s at 1 Hz: a record of 25 kB.
 TEST(Gather, KeepsOfARunWhatTablesNeed) {
 #ifdef __SANITIZE_ADDRESS__
+  // What is measured is the peak of the process; tests/run.sh without --sanitize measures it.
   GTEST_SKIP() << "the sanitizer keeps what was freed";
 #endif
   constexpr std::size_t kRuns = 20'000, kOutages = 7;

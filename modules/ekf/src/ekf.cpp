@@ -12,7 +12,8 @@ using PlaceRows = decltype(state::Linearized::H);
 /// those that leave the antenna where it was.
 void keep_antenna(const PlaceRows& before, const state::StateVector& moved, const PlaceRows& after,
                   const state::SlowBlock& arm, state::StateMatrix& covariance) {
-  const auto reset = so3::right_jacobian(state::part(moved, state::block::attitude)).inverse();
+  const Eigen::Matrix3d reset =
+      so3::right_jacobian(state::part(moved, state::block::attitude)).inverse();
   const Eigen::Matrix3d by_attitude = state::columns_of(before, state::block::attitude) * reset -
                                       state::columns_of(after, state::block::attitude);
   const Eigen::Matrix3d by_arm = state::columns_of(before, arm) - state::columns_of(after, arm);

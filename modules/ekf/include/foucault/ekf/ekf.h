@@ -23,12 +23,12 @@ class EkfOptions : public Configurable {
 /// their errors are the Gauss-Markov processes of MarkovBias, those of slow blocks as the layout
 /// has them.
 ///
-/// A fix tells where the antenna is, p + C l. An update that corrects C leaves a covariance of p and
-/// l that fits the old C: the next fix would find the antenna elsewhere than this one, by the
+/// A fix tells where the antenna is, p + C l. An update that corrects C leaves a covariance of p
+/// and l that fits the old C: the next fix would find the antenna elsewhere than this one, by the
 /// correction times the error of l, and tell of l as if the vehicle had turned. So, where the lever
-/// arm is estimated, the covariance of p is moved along with what H(x+) has by C and l: what the fix
-/// told of the antenna's place stays told. (Errors of the antenna's place, of C and of l would be
-/// coordinates in which nothing has to be moved.) Not with what H has by the time offset, the
+/// arm is estimated, the covariance of p is moved along with what H(x+) has by C and l: what the
+/// fix told of the antenna's place stays told. (Errors of the antenna's place, of C and of l would
+/// be coordinates in which nothing has to be moved.) Not with what H has by the time offset, the
 /// antenna's velocity: its correction is mostly that of the fix's own error.
 class EkfNavigator : public measurement::Navigator {
  public:

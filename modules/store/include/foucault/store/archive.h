@@ -11,7 +11,7 @@
 /// Records of structures: one list of fields, shown to a Recorder or a Player, writes and reads.
 namespace foucault::store {
 
-/// Writes what it is shown. Reader has the same calls: one list of fields serves both.
+/// Writes what it is shown. Player has the same calls: one list of fields serves both.
 class Recorder {
  public:
   void field(const int64_t& value) { writer_.put(value); }
