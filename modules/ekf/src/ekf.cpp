@@ -1,30 +1,8 @@
 #include "foucault/ekf/ekf.h"
 
 #include "foucault/core/profile.h"
-#include "foucault/core/so3.h"
 
 namespace foucault::ekf {
-namespace {
-
-using PlaceRows = decltype(state::Linearized::H);
-
-/// The attitude was corrected, and with it where the arm points: errors of the position become
-/// those that leave the antenna where it was.
-void keep_antenna(const PlaceRows& before, const state::StateVector& moved, const PlaceRows& after,
-                  const state::SlowBlock& arm, state::StateMatrix& covariance) {
-  const Eigen::Matrix3d reset =
-      so3::right_jacobian(state::part(moved, state::block::attitude)).inverse();
-  const Eigen::Matrix3d by_attitude = state::columns_of(before, state::block::attitude) * reset -
-                                      state::columns_of(after, state::block::attitude);
-  const Eigen::Matrix3d by_arm = state::columns_of(before, arm) - state::columns_of(after, arm);
-  PlaceRows change = PlaceRows::Zero(3, covariance.cols());
-  state::columns_of(change, state::block::attitude) = by_attitude;
-  state::columns_of(change, arm) = by_arm;
-  state::rows_of(covariance, state::block::position) += (change * covariance).eval();
-  state::columns_of(covariance, state::block::position) += (covariance * change.transpose()).eval();
-}
-
-}  // namespace
 
 void EkfOptions::fields(ConfigFields& f) {
   f.number("cov_interval_s", cov_interval_s, {0, 1}, "longest step of the covariance");
@@ -95,11 +73,7 @@ state::Innovation EkfNavigator::innovation(const measurement::Observation& obser
 void EkfNavigator::update(const measurement::ObservationPtr& observation) {
   catch_up();
   const StageTimer timer(Stage::update);
-  const state::Linearized z = linearize(*observation);
-  const state::StateVector moved = state::kalman_update(z, state_, covariance_);
-  const state::SlowBlock* arm = noise_.layout.find(state::block::lever_arm);
-  if (arm && observation->is_place())
-    keep_antenna(z.H, moved, linearize(*observation).H, *arm, covariance_);
+  state::kalman_update(linearize(*observation), state_, covariance_);
   R_n_b_ = state_.q_n_b.toRotationMatrix();
   covered_ = state_;
 }

@@ -170,36 +170,6 @@ Eigen::Vector3d antenna_velocity(const state::NavState& state, const Eigen::Vect
   return state.velocity_n + state.q_n_b * omega_b.cross(kLeverArm);
 }
 
-/// At one instant sixteen fixes tell what one of a quarter of the sigma does, however far the first
-/// ones correct the attitude: nothing has turned, and no arm has been seen from two sides.
-TEST(Ekf, CorrectingTheAttitudeTellsNothingOfTheLeverArm) {
-  Fixture f;
-  state::Layout layout;
-  layout.add(state::block::lever_arm, 0.3);
-  const auto sigmas_after = [&](int fixes) {
-    Trip& trip = f.trip;
-    state::NodeVector sigmas = initial_sigmas();
-    state::part(sigmas, state::block::position).setConstant(2);
-    state::part(sigmas, state::block::attitude).setConstant(10 * kDegree);
-    state::NodeMatrix prior = sigmas.cwiseAbs2().asDiagonal();
-    // As after a start on the way, where position and attitude are of one mind.
-    state::part(prior, state::block::position, state::block::attitude)(2, 0) =
-        0.9 * 2 * 10 * kDegree;
-    state::part(prior, state::block::attitude, state::block::position)(0, 2) =
-        0.9 * 2 * 10 * kDegree;
-    EkfNavigator filter(adis16465(), layout, EkfOptions{});
-    filter.start({f.state, prior});
-    GnssFix fix =
-        trip.exact_fix(trip.begin_ns(), Eigen::Vector3d::Constant(0.02 * std::sqrt(fixes)));
-    fix.antenna.height += 0.7;  // corrects roll by 18 degrees
-    for (int i = 0; i < fixes; ++i) filter.update(measurement::gnss_position(fix));
-    return filter.epoch().covariance.diagonal().cwiseSqrt().eval();
-  };
-  const Vector once = sigmas_after(1), often = sigmas_after(16);
-  for (Eigen::Index row = state::kNodeSize; row < once.size(); ++row)
-    EXPECT_NEAR(often[row] / once[row], 1, 2e-3) << row;
-}
-
 TEST(Ekf, VelocityOfAFixActsThroughTheLeverArm) {
   Fixture f;
   EkfNavigator filter = f.navigator();

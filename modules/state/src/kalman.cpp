@@ -14,7 +14,7 @@ Innovation innovation_of(const Linearized& z, const StateMatrix& covariance) {
 }
 
 template <int kMostRows>
-StateVector kalman_update(const LinearizedRows<kMostRows>& z, NavState& x, StateMatrix& P) {
+void kalman_update(const LinearizedRows<kMostRows>& z, NavState& x, StateMatrix& P) {
   const StateByColumns<kMostRows> PHt = P * z.H.transpose();
   const auto S = (z.H * PHt + z.R).eval();
   const StateByColumns<kMostRows> K = S.llt().solve(PHt.transpose()).transpose();
@@ -28,10 +28,9 @@ StateVector kalman_update(const LinearizedRows<kMostRows>& z, NavState& x, State
   columns_of(P, block::attitude) = (columns_of(P, block::attitude) * reset.transpose()).eval();
   P = (0.5 * (P + P.transpose())).eval();
   x = boxplus(x, error);
-  return error;
 }
 
-template StateVector kalman_update(const Linearized&, NavState&, StateMatrix&);
-template StateVector kalman_update(const LinearizedState&, NavState&, StateMatrix&);
+template void kalman_update(const Linearized&, NavState&, StateMatrix&);
+template void kalman_update(const LinearizedState&, NavState&, StateMatrix&);
 
 }  // namespace foucault::state

@@ -18,7 +18,6 @@ class GnssPosition final : public Observation {
   explicit GnssPosition(const GnssFix& fix);
 
   std::string_view name() const override { return "gnss_position"; }
-  bool is_place() const override { return true; }
   state::Linearized linearize(const state::NavState& x, const MeanMotion& mean,
                               const state::Layout& layout) const override;
 

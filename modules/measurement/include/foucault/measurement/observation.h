@@ -25,10 +25,6 @@ class Observation {
   /// it after this is gone.
   virtual std::string_view name() const = 0;
 
-  /// Whether it is where something is that moves with the IMU: the columns of H by the position are
-  /// the identity.
-  virtual bool is_place() const { return false; }
-
   /// In the local NED of x: r = measured - predicted, H = d predicted / d error, by the blocks of
   /// `layout`, and the covariance R of what was measured. `mean`: about the stamp.
   virtual state::Linearized linearize(const state::NavState& x, const MeanMotion& mean,

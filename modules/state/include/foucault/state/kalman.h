@@ -33,8 +33,8 @@ Innovation innovation_of(const Linearized& z, const StateMatrix& covariance);
 
 /// Uses a measurement. Joseph form: the covariance stays positive definite whatever the rounding.
 /// With the attitude moved by exp(d), the error that was d + x becomes Jr(d) x: the covariance is
-/// turned so. Returns what the state was moved by.
+/// turned so.
 template <int kMostRows>
-StateVector kalman_update(const LinearizedRows<kMostRows>& z, NavState& x, StateMatrix& covariance);
+void kalman_update(const LinearizedRows<kMostRows>& z, NavState& x, StateMatrix& covariance);
 
 }  // namespace foucault::state
