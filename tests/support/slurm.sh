@@ -58,6 +58,7 @@ wait_for() {
     sleep 0.1
   done
   echo "slurm.sh: waited in vain for: $*" >&2
+  down
   exit 1
 }
 
@@ -71,6 +72,7 @@ up() {
     --log-file="$dir/munged.log" --pid-file="$dir/munged.pid" --seed-file="$dir/munged.seed"
   wait_for test -S "$dir/munge.sock"
   conf_of "$dir" "$nodes" $((20000 + RANDOM % 20000)) >"$dir/slurm.conf"
+  echo "CgroupPlugin=cgroup/v1" >"$dir/cgroup.conf" # unused; looked for, it is missing in a chroot
   start slurmctld slurmctld -D
   for i in $(seq "$nodes"); do start "n$i" slurmd -D -N "n$i"; done
   wait_for all_idle
