@@ -2,7 +2,7 @@
 # Measures what the store is for, with the built program, in a temporary folder:
 #   store.sh workers FOUCAULT [COUNT [LOGS]]   workers (8) on one store against one process on all
 #                                       cores: runs computed twice, wall time over that of the
-#                                       process. Four runs a log (60), half a second each
+#                                       process. Four runs a log (48), of a second each
 #   store.sh kills FOUCAULT [COUNT]     the only worker killed at random moments (50), within the
 #                                       third of the time that it takes: whether the result is that
 #                                       of a process nobody killed, runs done twice
@@ -85,7 +85,7 @@ kills() {
 }
 
 case $verb in
-  workers) workers "${3:-8}" "${4:-60}" ;;
+  workers) workers "${3:-8}" "${4:-48}" ;;
   kills) kills "${3:-50}" ;;
   *) exit 2 ;;
 esac
