@@ -15,7 +15,8 @@ apps/build.sh
 
 echo "install: making packages and installing them"
 rm -f build/foucault_*.deb build/libfoucault-dev_*.deb
-(cd build && cpack >cpack.log 2>&1) || {
+# Folders of a package have the umask's permissions; they are for all users of the machine.
+(umask 022 && cd build && cpack >cpack.log 2>&1) || {
   tail -n 20 build/cpack.log >&2
   fail "cpack could not make the packages"
 }

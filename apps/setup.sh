@@ -17,6 +17,7 @@ build_packages=(
 )
 test_packages=(
   libgtest-dev libgmock-dev libgeographiclib-dev
+  rtklib           # fixes of raw observations
   doxygen          # pages of the public headers
   chromium python3 # reports as readers see them
   parallel openmpi-bin slurmctld slurmd slurm-client munge # engines that start workers

@@ -1,8 +1,5 @@
-/// The Kalman filter over data of your own: `embed_ekf imu.csv gnss.csv` prints a line an epoch.
-///   imu.csv   time [s UNIX], mean rates x, y, z [rad/s] and forces x, y, z [m/s^2] since the row
-///             before, on axes that look forward, right, down
-///   gnss.csv  time, latitude, longitude [deg], height [m], sigma north, east, down [m]
-
+/// The Kalman filter over imu.csv (time [s], mean rates [rad/s] and forces [m/s^2] since the row
+/// before; forward, right, down) and gnss.csv (time, latitude, longitude [deg], height, sigmas).
 #include <cstdio>
 #include <fstream>
 
@@ -12,25 +9,20 @@
 #include "foucault/navigation/navigation_run.h"
 #include "foucault/state/epoch_sink.h"
 using namespace foucault;
-
 using Row = Eigen::Matrix<double, 7, 1>;
 std::istream& operator>>(std::istream& in, Row& row) {
   for (double& value : row) (in >> value).ignore();
   return in;
 }
 
-int main(int argc, char** argv) {
-  std::ifstream imu_file(argc == 3 ? argv[1] : ""), gnss_file(argc == 3 ? argv[2] : "");
-  if (!imu_file || !gnss_file) return std::puts("embed_ekf IMU.csv GNSS.csv"), 2;
-  navigation::NavigationRunOptions options;
-  options.imu = imu::imu_preset("ADIS16465");
+int main() {
+  std::ifstream imu_file("imu.csv"), gnss_file("gnss.csv");
+  const navigation::NavigationRunOptions options(imu::imu_preset("ADIS16465"));
   state::EpochSink printer([](const state::Epoch& e) {  // a Sink of your own is told of fixes, too
-    const Eigen::Vector3d sigma = e.sigma_of(state::block::position);
-    std::printf("%.3f,%.9f,%.9f,%.4f,%.4f,%.4f,%.4f\n", to_seconds(e.t_ns),
-                e.position.latitude / kDegree, e.position.longitude / kDegree, e.position.height,
-                sigma.x(), sigma.y(), sigma.z());
+    std::printf("%.3f,%.9f,%.9f,%.4f,%.4f\n", to_seconds(e.t_ns), e.position.latitude / kDegree,
+                e.position.longitude / kDegree, e.position.height,
+                e.sigma_of(state::block::position).norm());
   });
-  // Finds the start by itself, gates fixes, bridges holes.
   navigation::NavigationRun run(std::make_unique<ekf::EkfNavigator>(options.imu), options, printer);
   imu::Incrementer incrementer(imu::SampleKind::interval_mean);
   Row row, fixed;

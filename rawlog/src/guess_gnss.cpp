@@ -274,10 +274,10 @@ void guess_velocity_unit(const GuessTable& table, const FixColumns& columns,
   const char* role = has_vector(columns) ? "velocity_north" : "speed";
   const std::string& named = table.columns[columns.roles.at(role)].name.unit;
   std::vector<double> ratios;
-  constexpr double kSlowest = 2;
+  constexpr double kMoving = 2;
   for (size_t i = 0; i < ways.ways.size(); ++i) {
     const double v = ways.velocities[i].norm();
-    if (ways.ways[i].norm() > kSlowest && v > 0) ratios.push_back(ways.ways[i].norm() / v);
+    if (ways.ways[i].norm() > kMoving && v > 0) ratios.push_back(ways.ways[i].norm() / v);
   }
   const bool known = std::any_of(speed_units().begin(), speed_units().end(),
                                  [&](const Unit& unit) { return unit.name == named; });
@@ -291,8 +291,8 @@ void guess_velocity_unit(const GuessTable& table, const FixColumns& columns,
   const Unit& best =
       *std::min_element(speed_units().begin(), speed_units().end(),
                         [&](const Unit& a, const Unit& b) { return off(a) < off(b); });
-  constexpr double kAgrees = 0.2;
-  const bool fits = off(best) < kAgrees;
+  constexpr double kFits = 0.2;
+  const bool fits = off(best) < kFits;
   if (known && (best.name == named || !fits)) return;
   if (fits) mapping.velocity_unit = best.name;
   remark = {fits && !known, fmt::format("the way between fixes is {:.3g} m/s for 1 here{}", ratio,

@@ -16,6 +16,8 @@ constexpr size_t kMostFields = 4096;
 constexpr size_t kLongestArray = 1U << 20;
 constexpr const char* kText = "string";
 
+}  // namespace
+
 /// Walks over a message. Plain CDR puts each number at a multiple of its size, counted from behind
 /// the header, and may have the order of bytes turned round.
 class RosCursor {
@@ -56,6 +58,8 @@ class RosCursor {
   bool turned_;
   RecordCursor cursor_;
 };
+
+namespace {
 
 using RosDecoder = double (*)(RosCursor&);
 

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Measures what the store is for, with the built program, in a temporary folder:
-#   store.sh workers FOUCAULT [COUNT]   workers (8) on one store against one process on all cores:
-#                                       runs computed twice, wall time over that of the process
+#   store.sh workers FOUCAULT [COUNT [LOGS]]   workers (8) on one store against one process on all
+#                                       cores: runs computed twice, wall time over that of the
+#                                       process. Four runs a log (48), of a second each
 #   store.sh kills FOUCAULT [COUNT]     the only worker killed at random moments (50), within the
 #                                       third of the time that it takes: whether the result is that
 #                                       of a process nobody killed, runs done twice
@@ -45,8 +46,8 @@ work() {
 }
 
 workers() {
-  local count=$1 all=48 alone together computed
-  make_logs 12 300
+  local count=$1 logs=$2 all=$((4 * $2)) alone together computed
+  make_logs "$logs" 300
   alone=$(seconds evaluate --out alone)
   together=$(seconds work "$count")
   computed=$(cat worker*.txt | sed -n 's/.* \([0-9]*\) runs computed.*/\1/p' | paste -sd+ | bc)
@@ -84,7 +85,7 @@ kills() {
 }
 
 case $verb in
-  workers) workers "${3:-8}" ;;
+  workers) workers "${3:-8}" "${4:-48}" ;;
   kills) kills "${3:-50}" ;;
   *) exit 2 ;;
 esac

@@ -56,9 +56,11 @@ void check_log(const std::string& log, const Settings& settings);
 struct Evaluation {
   std::optional<evaluation::EvaluationSummary> summary;  ///< a worker has none
   /// Of an ablation: of the cases with the configuration as it is, if any has results.
-  std::optional<evaluation::EvaluationSummary> as_configured;
-  std::vector<std::string> damages;   ///< logs that break off, a line each; results are up to there
-  std::vector<std::string> failures;  ///< of methods, a line each; they have no results
+  std::optional<evaluation::EvaluationSummary> as_configured = {};
+  /// Logs that break off, a line each; results are up to there.
+  std::vector<std::string> damages = {};
+  /// Of methods, a line each; they have no results.
+  std::vector<std::string> failures = {};
 };
 
 /// Reads the records of all runs, those of compared runs one after the other, and writes drift.csv

@@ -121,6 +121,15 @@ TEST(BashCompletion, OffersEveryCommandAndOption) {
               testing::ElementsAre("--method"));
 }
 
+TEST(BashCompletion, OffersWhatAnOptionCanBe) {
+  const std::string script = bash_completion(tree());
+  EXPECT_EQ(offered_by_bash(script, "foucault run trip.rawlog --method r"),
+            (std::vector<std::string>{"rts", "refined", "rough"}));
+  EXPECT_THAT(offered_by_bash(script, "foucault simulate --fault imu_gap"),
+              testing::ElementsAre("imu_gap_sample", "imu_gap_3s", "imu_gap_60s"));
+  EXPECT_THAT(offered_by_bash(script, "foucault run --out "), testing::ElementsAre());
+}
+
 TEST(ZshCompletion, KnowsEveryCommandAndOption) {
   const CommandEntry program = tree();
   const std::string script = zsh_completion(program);
@@ -137,6 +146,7 @@ TEST(ZshCompletion, KnowsEveryCommandAndOption) {
       EXPECT_THAT(body, HasSubstr("    " + last_word(sub) + ") _")) << command->name;
     }
   }
+  EXPECT_THAT(script, HasSubstr(":(batch rts ekf refined rough full)'"));
 }
 
 /// Lines of examples, those that go on behind a backslash in one.

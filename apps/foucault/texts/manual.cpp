@@ -94,6 +94,31 @@ std::string command_words(const CommandEntry& command) {
   return words;
 }
 
+/// What an option can be, where its help has a line for each: "  batch: what that is".
+std::string choices(const OptionEntry& option) {
+  std::string words;
+  std::istringstream lines(option.help);
+  for (std::string line; std::getline(lines, line);) {
+    const std::string word = line.substr(0, line.find(": "));
+    if (word.rfind("  ", 0) == 0 && word.size() < line.size() &&
+        word.find(' ', 2) == std::string::npos)
+      words += word.substr(1);
+  }
+  return words;
+}
+
+/// In place of commands, behind the names of options that have choices.
+std::string bash_choices(const CommandEntry& command) {
+  std::string lines;
+  for (const OptionEntry& option : command.options) {
+    const std::string words = choices(option);
+    if (words.empty()) continue;
+    for (const std::string& name : option.names)
+      lines += fmt::format("      [[ $previous == {} ]] && commands='{}'\n", name, words);
+  }
+  return lines;
+}
+
 /// In single quotes of a shell, and for _arguments.
 std::string zsh_text(const std::string& text) {
   std::string line = text.substr(0, text.find('\n'));
@@ -105,9 +130,11 @@ std::string zsh_text(const std::string& text) {
 
 std::string zsh_option(const OptionEntry& option) {
   std::string lines;
-  const std::string files = option.argument.empty() ? "" : ":" + placeholder(option) + ":_files";
+  const std::string words = choices(option);
+  const std::string values = words.empty() ? "_files" : "(" + words.substr(1) + ")";
+  const std::string value = option.argument.empty() ? "" : ":" + placeholder(option) + ":" + values;
   for (const std::string& name : option.names) {
-    lines += fmt::format(" \\\n    '*{}[{}]{}'", name, zsh_text(option.help), files);
+    lines += fmt::format(" \\\n    '*{}[{}]{}'", name, zsh_text(option.help), value);
   }
   return lines;
 }
@@ -159,7 +186,8 @@ std::string bash_completion(const CommandEntry& program) {
   std::string text =
       "# Completion of foucault for bash.\n"
       "_foucault() {\n"
-      "  local current=\"${COMP_WORDS[COMP_CWORD]}\" command=foucault commands options i\n"
+      "  local current=\"${COMP_WORDS[COMP_CWORD]}\" previous=\"${COMP_WORDS[COMP_CWORD - 1]}\"\n"
+      "  local command=foucault commands options i\n"
       "  for ((i = 1; i < COMP_CWORD; ++i)); do\n"
       "    [[ ${COMP_WORDS[i]} == help ]] && continue\n"
       "    case \"$command ${COMP_WORDS[i]}\" in\n";
@@ -168,8 +196,9 @@ std::string bash_completion(const CommandEntry& program) {
     text += fmt::format("      '{0}') command='{0}' ;;\n", all[i]->name);
   text += "    esac\n  done\n  case \"$command\" in\n";
   for (const CommandEntry* command : all) {
-    text += fmt::format("    '{}')\n      commands='{}'\n      options='{}'\n      ;;\n",
-                        command->name, command_words(*command), option_words(*command));
+    text += fmt::format("    '{}')\n      commands='{}'\n      options='{}'\n{}      ;;\n",
+                        command->name, command_words(*command), option_words(*command),
+                        bash_choices(*command));
   }
   return text +
          "  esac\n"

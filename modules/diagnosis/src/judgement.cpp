@@ -274,7 +274,7 @@ void judge_force(const LogFacts& facts, Judgement& out) {
 
 void judge_axes(const LogFacts& facts, Judgement& out) {
   constexpr double kClear = 0.6;  // of the correlation; chosen: less is a vehicle of its own ways
-  constexpr double kStraight = 45 * kDegree;
+  constexpr double kSideways = 45 * kDegree;
   if (facts.turns) {
     if (const auto side = wrong_side(*facts.turns, facts.accelerations, facts.force.mean)) {
       const bool is_gross = std::abs(facts.turns->correlation) > kAgree;
@@ -291,9 +291,9 @@ void judge_axes(const LogFacts& facts, Judgement& out) {
       std::abs(angle) / kDegree, fit.angle.sigma / kDegree, angle >= 0 ? "right" : "left",
       fit.correlation);
   const bool is_clear = fit.correlation > kClear && !fit.mirrored &&
-                        std::abs(angle) > kStraight + 3 * fit.angle.sigma;
+                        std::abs(angle) > kSideways + 3 * fit.angle.sigma;
   if (!is_clear) return out.ok("axes", text);
-  const bool is_backward = std::abs(angle) > kPi - kStraight;
+  const bool is_backward = std::abs(angle) > kPi - kSideways;
   out.warn("axes", text,
            is_backward ? "forward is backward; correct the axes of the import, unless the vehicle "
                          "went backward"

@@ -43,10 +43,10 @@ int64_t iterations(const ceres::Solver::Summary& summary) {
 class StopWhenModelHolds final : public ceres::IterationCallback {
  public:
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& iteration) override {
-    constexpr double kCostLeft = 1e-6;
+    constexpr double kCostMissed = 1e-6;
     const double missed = 1 - iteration.relative_decrease;
     const bool done = iteration.iteration > 0 && iteration.step_is_successful &&
-                      missed * missed * std::abs(iteration.cost_change) < kCostLeft;
+                      missed * missed * std::abs(iteration.cost_change) < kCostMissed;
     return done ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
   }
 };

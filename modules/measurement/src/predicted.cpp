@@ -23,11 +23,17 @@ state::Linearized Predicted::linearize(const state::NavState& x, const MeanMotio
   return z;
 }
 
+ObservationPtr predicted(std::string_view name, const Predicted::Values& measured, double sigma,
+                         Predicted::Function predict) {
+  const Eigen::VectorXd variances = Eigen::VectorXd::Constant(measured.size(), sigma * sigma);
+  return std::make_shared<Predicted>(name, measured, variances.asDiagonal(), std::move(predict));
+}
+
 ObservationPtr predicted(std::string_view name, double measured, double sigma,
                          std::function<double(const state::NavState&)> predict) {
   const auto values = [](double value) { return Predicted::Values::Constant(1, value); };
-  return std::make_shared<Predicted>(
-      name, values(measured), Eigen::MatrixXd::Constant(1, 1, sigma * sigma),
+  return predicted(
+      name, values(measured), sigma,
       [values, predict = std::move(predict)](const state::NavState& x) -> Predicted::Values {
         return values(predict(x));
       });

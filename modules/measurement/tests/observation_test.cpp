@@ -154,6 +154,14 @@ const std::vector<Kind> kKinds = {
          return -sound->linearize(at, {}, {}).r[0];
        });
      }},
+    {"predicted_values",
+     [](const auto& x, auto& rng) {
+       const ObservationPtr sound = gnss_velocity(random_fix(x, rng));
+       return predicted("predicted_values", Predicted::Values::Zero(3), 0.1,
+                        [sound](const state::NavState& at) -> Predicted::Values {
+                          return -sound->linearize(at, {}, {}).r;
+                        });
+     }},
     {"nonholonomic",
      [](const auto& x, auto& rng) {
        return std::make_shared<Nonholonomic>(random_stretch(x, rng), random_mounting(rng),
@@ -317,6 +325,18 @@ TEST(Observation, EveryObservationHasALine) {
     EXPECT_TRUE(there) << name;
   }
   EXPECT_GE(headers, 2);
+}
+
+TEST(Predicted, ValuesHaveOneSigmaAndErrorsOfTheirOwn) {
+  const auto north_and_east = [](const state::NavState& x) -> Predicted::Values {
+    return x.velocity_n.head<2>();
+  };
+  state::NavState x;
+  x.velocity_n = {1, 2, 3};
+  const state::Linearized z =
+      predicted("velocity", Eigen::Vector2d(1.5, 2.25), 0.1, north_and_east)->linearize(x, {}, {});
+  EXPECT_EQ(z.r, Eigen::Vector2d(0.5, 0.25));
+  EXPECT_TRUE(z.R.isApprox(0.01 * Eigen::Matrix2d::Identity(), 1e-15));
 }
 
 /// Negative control: a column left out, one of the wrong sign, one a thousandth too large.

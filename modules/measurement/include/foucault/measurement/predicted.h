@@ -30,7 +30,10 @@ class Predicted final : public Observation {
   Function predict_;
 };
 
-/// The same of one value with its sigma.
+/// The same of values with one sigma, whose errors have nothing to do with each other.
+ObservationPtr predicted(std::string_view name, const Predicted::Values& measured, double sigma,
+                         Predicted::Function predict);
+/// Of one value.
 ObservationPtr predicted(std::string_view name, double measured, double sigma,
                          std::function<double(const state::NavState&)> predict);
 

@@ -13,6 +13,9 @@ enum class EpochRate { epochs, imu };
 
 /// What a run is told. The noise of the IMU has no default; all else suits a car.
 struct NavigationRunOptions {
+  NavigationRunOptions() = default;
+  explicit NavigationRunOptions(const imu::ImuNoise& noise) : imu(noise) {}
+
   diagnosis::GnssOptions gnss;
   GapOptions gaps;
   measurement::AidOptions aids;
