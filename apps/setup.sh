@@ -10,7 +10,7 @@ build_packages=(
   libeigen3-dev libmrpt-obs-dev
   libceres-dev
   libopencv-dev libopencv-contrib-dev # contrib: freetype, for text in the figures
-  libcli11-dev nlohmann-json3-dev libfmt-dev libyaml-cpp-dev zlib1g-dev
+  libcli11-dev nlohmann-json3-dev libfmt-dev libyaml-cpp-dev zlib1g-dev libpng-dev
   libisal-dev                                      # logs, in half the time of zlib
   libbz2-dev liblz4-dev libzstd-dev libsqlite3-dev # recordings of ROS 1 and 2
   fonts-dejavu-core

@@ -117,7 +117,8 @@ TEST_F(Trip, ProfileTellsWhereTheTimeWent) {
     if (stage != "total_s") sum += seconds.get<double>();
   }
   EXPECT_NEAR(sum, profile["total_s"], 1e-9);
-  for (const char* stage : {"start_s", "read_s", "mechanize_s", "covariance_s", "draw_s"}) {
+  for (const char* stage :
+       {"start_s", "survey_s", "read_s", "mechanize_s", "covariance_s", "draw_s"}) {
     EXPECT_GT(profile[stage], 0) << stage;
   }
   EXPECT_FALSE(profile.contains("solve_s"));  // a filter has none

@@ -20,5 +20,5 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libeigen3-dev, libfmt-dev, libyaml-cpp-dev")
 string(CONCAT CPACK_DEBIAN_DEVELOPMENT_PACKAGE_RECOMMENDS
        "libceres-dev, libmrpt-obs-dev, libopencv-dev, libopencv-contrib-dev, nlohmann-json3-dev, "
-       "zlib1g-dev, libisal-dev, libbz2-dev, liblz4-dev, libzstd-dev, libsqlite3-dev")
+       "zlib1g-dev, libpng-dev, libisal-dev, libbz2-dev, liblz4-dev, libzstd-dev, libsqlite3-dev")
 include(CPack)

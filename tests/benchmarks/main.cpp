@@ -127,9 +127,9 @@ void print_stages(const ProgramRuns& program) {
     rule += "---|";
   }
   fmt::print("{}\n{}\n", head, rule);
-  for (const char* stage :
-       {"start", "read", "align", "mechanize", "preintegrate", "propagate", "update", "solve",
-        "marginalize", "covariance", "smooth", "statistics", "write", "draw", "other", "total"}) {
+  for (const char* stage : {"start", "survey", "read", "align", "mechanize", "preintegrate",
+                            "propagate", "update", "solve", "marginalize", "covariance", "smooth",
+                            "statistics", "write", "draw", "other", "total"}) {
     std::string line = fmt::format("| {} |", stage);
     for (const ProgramRun& run : program.runs) line += fmt::format(" {} |", stage_text(run, stage));
     fmt::print("{}\n", line);

@@ -166,12 +166,18 @@ RunResult result_of(RunPass& pass, const RunJob& job, const Settings& settings) 
 }  // namespace
 
 RunResult run_into(const RunJob& job, const std::filesystem::path& folder, Console& console) {
-  std::optional<Profile> profile;
-  if (job.profile || job.report) profile.emplace();
-  if (job.profile) profile->add(Stage::start, process_cpu_s());
   const ResourceMeter meter;
+  const double started_cpu_s = process_cpu_s();
   Surveyor surveyor(console);
   Settings settings = surveyor.complete(job.log, settings_for(job.log, job.settings));
+  // The filters of a survey have stages of their own, which are not those of the run.
+  const double surveyed_cpu_s = process_cpu_s() - started_cpu_s;
+  std::optional<Profile> profile;
+  if (job.profile || job.report) {
+    profile.emplace();
+    profile->add(Stage::survey, surveyed_cpu_s);
+  }
+  if (job.profile) profile->add(Stage::start, started_cpu_s);
   if (job.settings.imu.preset == "auto" && settings.imu.arw_deg_sqrt_h)  // else it warned
     console.say(fmt::format("{:<10} {}; nearest preset {}", "noise", noise_text(settings),
                             settings.imu.preset));

@@ -81,6 +81,13 @@ void RunOutput::epoch(const state::Epoch& epoch) {
   forward_.smoothed(epoch);
 }
 
+void RunOutput::forward_epoch(const state::Epoch& epoch) {
+  forward_.epoch(epoch);
+  if (report_ == nullptr) return;
+  const StageTimer timer(Stage::draw);
+  report_->forward_epoch(epoch);
+}
+
 void RunOutput::write(const state::Epoch& epoch) {
   const StageTimer timer(Stage::write);
   solution_.epoch(epoch);

@@ -29,7 +29,7 @@ class RunOutput : public state::ForwardSink {
   void measurement(const Measurement& measurement);
 
   void epoch(const state::Epoch& epoch) override;
-  void forward_epoch(const state::Epoch& epoch) override { forward_.epoch(epoch); }
+  void forward_epoch(const state::Epoch& epoch) override;
   void fix(const state::FixResult& fix) override;
   void observation(const state::ObservationResult& result) override;
   void notice(const state::Notice& notice) override;

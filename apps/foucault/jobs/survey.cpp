@@ -259,7 +259,8 @@ LearnedNoise Surveyor::learn_noise(const std::string& log, const calibration::Re
       tries * diagnosis::chi_square_tail(2 * all.gain,
                                          static_cast<int>(calibration::axes_of(ways).told.size()));
   if (settings.calibrate.noise == "auto" && chance > kChance) return noise_of(aids.noise, way);
-  const LearnedNoise noise = noise_of(all.noise, way);
+  LearnedNoise noise = noise_of(all.noise, way);
+  noise.imu.learned = true;
   Settings with = settings;
   noise.apply_to(with);
   warn(log, fmt::format("noise as the recording shows it, not as configured: {} "
@@ -287,6 +288,7 @@ std::optional<LearnedNoise> Surveyor::find_noise(const calibration::RecordedWay&
   const auto is_told = [](const calibration::LearnedAxis& one) { return one.observable; };
   if (std::none_of(all.axes.begin(), all.axes.end(), is_told)) return std::nullopt;
   LearnedNoise noise = noise_of(all.noise, way);
+  noise.imu.learned = true;
   noise.imu.gyro_turn_on_sigma = turn_on(noise.imu.gyro_turn_on_sigma, bias.gyro);
   noise.imu.accel_turn_on_sigma = turn_on(noise.imu.accel_turn_on_sigma, bias.accel);
   noise.preset = imu::imu_preset_names()[nearest];

@@ -156,6 +156,12 @@ void add_presets(const AllanResult& result, const AllanSensor& sensor, const plo
   }
 }
 
+/// As every figure has it; tables of coefficients have the units of the configuration.
+std::string with_degree_sign(std::string unit) {
+  if (unit.rfind("deg", 0) == 0) unit.replace(0, 3, "°");
+  return unit;
+}
+
 plot::Figure allan_figure(const AllanResult& result, std::size_t index) {
   const AllanSensor& sensor = result.sensors[index];
   plot::Figure figure{fmt::format("allan_{}", sensor.key),
@@ -169,15 +175,19 @@ plot::Figure allan_figure(const AllanResult& result, std::size_t index) {
   figure.height_mm = 150;
   plot::Panel panel;
   panel.x = {"Averaging time", "s", plot::AxisKind::log};
-  panel.y = {"Allan deviation", sensor.unit, plot::AxisKind::log};
+  panel.y = {"Allan deviation", with_degree_sign(sensor.unit), plot::AxisKind::log};
   constexpr double kRoom = 8;  // for names at either end
   panel.x.min = result.curve.points.front().tau_s / kRoom;
   panel.x.max = result.curve.points.back().tau_s * kRoom;
   std::vector<plot::Series> pooled = pooled_series(result, sensor);
   add_presets(result, sensor, pooled.back(), panel);
   const std::array<plot::Ink, 3> inks{plot::Ink::blue, plot::Ink::orange, plot::Ink::green};
-  for (std::size_t axis = 0; axis < 3; ++axis)
+  const std::array<plot::Dash, 3> dashes{plot::Dash::none, plot::Dash::long_dashes,
+                                         plot::Dash::dash_dot};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
     panel.series.push_back(axis_series(result, sensor, axis + 1, inks[axis]));
+    panel.series.back().dash = dashes[axis];
+  }
   for (plot::Series& series : pooled) panel.series.push_back(std::move(series));
   panel.series.push_back(fit_series(result, sensor));
   figure.panels.push_back(std::move(panel));
@@ -225,7 +235,7 @@ plot::Figure spectrum_figure(const AllanResult& result) {
     plot::Panel panel;
     panel.title = sensor.name;
     panel.x = {"Frequency", "Hz"};
-    panel.y = {"Density", sensor.density_unit, plot::AxisKind::log};
+    panel.y = {"Density", with_degree_sign(sensor.density_unit), plot::AxisKind::log};
     for (const auto& [spectrum, lines, label, ink] :
          {std::tuple{&result.in_motion, &sensor.lines_in_motion, "in motion", plot::Ink::orange},
           std::tuple{&result.at_rest, &sensor.lines_at_rest, "at rest", plot::Ink::blue}}) {
@@ -252,7 +262,7 @@ page::Table lines_table(const AllanResult& result) {
       for (const calibration::SpectralLine& line : *lines)
         table.rows.push_back(
             {sensor.name, when, fmt::format("{:.4g}", line.frequency_hz),
-             fmt::format("{:.3g} {}", line.rms * sensor.density_shown, gyro ? "deg/s" : "m/s²"),
+             fmt::format("{:.3g} {}", line.rms * sensor.density_shown, gyro ? "°/s" : "m/s²"),
              fmt::format("{:.3g}", line.ratio)});
   }
   return table;

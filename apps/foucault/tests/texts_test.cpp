@@ -82,8 +82,9 @@ TEST(ProfileText, ALineAStageAndTheirSum) {
   for (std::size_t i = 0; i < kStages; ++i) profile.push_back({static_cast<Stage>(i), 1, 1});
   const std::vector<std::string> lines = profile_lines(profile);
   ASSERT_EQ(lines.size(), kStages + 1);
-  EXPECT_THAT(lines[1], AllOf(HasSubstr("read"), HasSubstr("log to measurements")));
-  EXPECT_THAT(lines.back(), HasSubstr("15.000 s"));
+  EXPECT_THAT(lines[1], AllOf(HasSubstr("survey"), HasSubstr("gone through before")));
+  EXPECT_THAT(lines[2], AllOf(HasSubstr("read"), HasSubstr("log to measurements")));
+  EXPECT_THAT(lines.back(), HasSubstr("16.000 s"));
 }
 
 RunResult some_result() {
@@ -140,7 +141,13 @@ TEST(RunText, Verdicts) {
   EXPECT_THAT(verdict_banner(result).title, HasSubstr("cannot be believed"));
   result.metrics.reference->position_inside.fraction.setConstant(0.575);
   EXPECT_THAT(verdict_banner(result).lines.back(),
-              AllOf(HasSubstr("57.5 %"), HasSubstr("Against the reference")));
+              AllOf(HasSubstr("57.5 %"), HasSubstr("against the reference")));
+  EXPECT_THAT(verdict_line(result), HasSubstr("; yet against the reference only 57.5 %"));
+  EXPECT_THAT(nlohmann::json::parse(metrics_json(result))["against_reference"],
+              HasSubstr("57.5 %"));
+  result.metrics.reference->position_inside.fraction.setConstant(0.99);
+  EXPECT_THAT(verdict_line(result), Not(HasSubstr("reference")));
+  EXPECT_FALSE(nlohmann::json::parse(metrics_json(result)).contains("against_reference"));
 }
 
 TEST(RunPage, ATableForWhatThereIs) {

@@ -11,6 +11,7 @@ namespace {
 /// In the order of Stage.
 constexpr const char* kNotes[kStages] = {
     "the program and its libraries, before the run",
+    "the log gone through before: what is wrong with it, clocks, noise",
     "log to measurements, decompression included",
     "initial attitude",
     "strapdown mechanization, every IMU sample",

@@ -137,10 +137,25 @@ std::string size_text(const RunResult& result) {
                      nis.samples, std::sqrt(nis.mean / 3));
 }
 
+std::optional<std::string> against_reference(const RunResult& result) {
+  constexpr double kExpected = 0.95;  // 0.997, of errors that last
+  const std::optional<evaluation::ReferenceMetrics>& reference = result.metrics.reference;
+  if (!reference || reference->position_inside.samples == 0) return std::nullopt;
+  const double inside = reference->position_inside.fraction.col(2).mean();
+  if (inside >= kExpected) return std::nullopt;
+  return fmt::format(
+      "against the reference only {:.1f} % of the position errors lie within 3 sigma (99.7 % if "
+      "the sigmas are right): the solution is worse than its sigmas say",
+      100 * inside);
+}
+
 std::string metrics_json(const RunResult& result) {
   Json json = Object().with("method", result.method).with("schema_version", kSchemaVersion);
   json.update(exports::run_metrics_json(result.metrics, result.calibration));
   if (result.forward) json["forward"] = forward_json(*result.forward);
+  if (const std::optional<std::string> warning = against_reference(result)) {
+    json["against_reference"] = *warning;
+  }
   json.update(facts_json(result.facts));
   json["statistics_from_s"] = result.statistics_from_s;
   json["cpu_s"] = result.resources.cpu_s;
@@ -184,9 +199,13 @@ std::vector<std::string> metrics_lines(const RunResult& result) {
 
 std::string verdict_line(const RunResult& result) {
   const Trust& trust = result.metrics.trust;
-  const std::string reasons = fmt::format("{}", fmt::join(trust.reasons, "; "));
-  if (!trust.trustworthy) return fmt::format("verdict    NOT TRUSTWORTHY: {}", reasons);
-  return fmt::format("verdict    trustworthy; {}", reasons.empty() ? size_text(result) : reasons);
+  std::vector<std::string> reasons = trust.reasons;
+  if (trust.trustworthy && reasons.empty()) reasons = {size_text(result)};
+  if (const std::optional<std::string> warning = against_reference(result)) {
+    reasons.push_back("yet " + *warning);
+  }
+  return fmt::format("verdict    {} {}", trust.trustworthy ? "trustworthy;" : "NOT TRUSTWORTHY:",
+                     fmt::join(reasons, "; "));
 }
 
 }  // namespace foucault::app

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,10 @@ std::string separation_text(const evaluation::SeparationMetrics& separation);
 
 /// Whether the run can be believed, and why.
 std::string verdict_line(const RunResult& result);
+
+/// What speaks against a run that the fixes speak for: errors against the reference are larger than
+/// its sigmas say. None if they are not, or without a reference.
+std::optional<std::string> against_reference(const RunResult& result);
 
 /// What speaks for a run.
 std::string size_text(const RunResult& result);

@@ -78,8 +78,9 @@ Panel aid_panel(const RunData& data, const AidSummary& aid, const SquareHistory&
     panel.series.back().shape = Shape::cross;
   }
   const double d = aid.dimension;
+  const Interval whole = whole_run(data);
   add_bounds({aid.single_band.low / d, aid.single_band.high / d}, "95 % for one measurement",
-             used.x.empty() ? rejected.x : used.x, panel);
+             {whole.begin, whole.end}, panel);
   return panel;
 }
 

@@ -89,6 +89,7 @@ struct ShownRow {
   double prior = 0, prior_sigma = 0;
   double last = 0, last_sigma = 0;
   std::vector<double> t, value, sigma;
+  bool smoothed = false;  ///< these are of the forward run, before the last ones
 
   /// The recording has told at least something of it.
   bool told() const { return last_sigma <= 0.7 * prior_sigma; }
@@ -104,8 +105,9 @@ std::vector<double> scaled(std::vector<double> values, double factor) {
 ShownRow shown_row(const BlockHistory& block, const BlockLook& look, Eigen::Index row) {
   const auto i = static_cast<size_t>(row);
   const auto size = static_cast<size_t>(block.slow.block.size);
-  DecimatedTable::Rows rows = block.rows.rows();
   ShownRow shown;
+  shown.smoothed = !block.forward.empty();
+  DecimatedTable::Rows rows = (shown.smoothed ? block.forward : block.rows).rows();
   shown.block = look.title;
   shown.name = i < look.rows.size() ? look.rows[i] : std::to_string(i + 1);
   shown.unit = look.unit;
@@ -138,18 +140,20 @@ std::string value_text(const ShownRow& row) {
                      number_text(row.last_sigma, decimals), row.unit == "°" ? "" : " ", row.unit);
 }
 
-/// Of the estimate within its bounds after the first quarter of the run; empty without finite
-/// numbers.
+/// Of the estimate within its bounds in the second half of the run, and of the smoothed one;
+/// empty without finite numbers.
 Span settled_span(const ShownRow& row) {
   Span span{std::numeric_limits<double>::max(), std::numeric_limits<double>::lowest()};
-  const double settled = 0.75 * row.t.front() + 0.25 * row.t.back();
+  const double settled = (row.t.front() + row.t.back()) / 2;
   for (size_t i = 0; i < row.t.size(); ++i) {
     const double width = 3 * row.sigma[i];
     if (!(row.t[i] >= settled) || !std::isfinite(row.value[i]) || !std::isfinite(width)) continue;
     span.min = std::min(span.min, row.value[i] - width);
     span.max = std::max(span.max, row.value[i] + width);
   }
-  return span;
+  if (!row.smoothed) return span;
+  return {std::min(span.min, row.last - 3 * row.last_sigma),
+          std::max(span.max, row.last + 3 * row.last_sigma)};
 }
 
 void add_prior_line(const ShownRow& row, double at, const char* edge, Panel& panel) {
@@ -177,27 +181,46 @@ void add_axis_and_prior(const ShownRow& row, Panel& panel) {
   panel.y.max = span.max + kMargin * span.width();
 }
 
+/// One value for the whole recording, with what it may be wrong by.
+void add_smoothed(const ShownRow& row, Panel& panel) {
+  const std::vector<double> whole{row.t.front(), row.t.back()};
+  for (const double sigmas : {-3.0, 0.0, 3.0}) {
+    const double at = row.last + sigmas * row.last_sigma;
+    Series series =
+        line(sigmas == 0 ? "smoothed" : "smoothed ±3σ", Ink::vermillion, whole, {at, at});
+    series.column = fmt::format("{} smoothed {:+.0f} sigma", row.title(), sigmas);
+    series.dash = sigmas == 0 ? Dash::long_dashes : Dash::dots;
+    panel.series.push_back(std::move(series));
+  }
+}
+
 Panel row_panel(const RunData& data, const ShownRow& row) {
   const bool is_alone = row.name.empty();  // and may have a long name
   Panel panel = time_panel(data, {is_alone ? "" : row.block, row.unit});
   panel.title = is_alone ? row.block : row.name;
   panel.note = value_text(row);
   panel.series = {bounds(row.t, row.value, row.sigma, row.title() + " 3 sigma"),
-                  line("estimate", Ink::blue, row.t, row.value)};
+                  line(row.smoothed ? "run forward" : "estimate", Ink::blue, row.t, row.value)};
   panel.series.back().column = row.title();
   add_axis_and_prior(row, panel);
+  if (row.smoothed) add_smoothed(row, panel);
   return panel;
 }
 
 Figure rows_figure(const RunData& data, const FigureLook& look, const std::vector<ShownRow>& rows,
                    const std::string& subtitle) {
+  const bool is_smoothed = rows.front().smoothed;
   Figure figure = stacked_figure(
       look.name, look.title, subtitle,
-      "Estimates with their 3-sigma bounds and, where they are not far wider, those of the prior "
-      "(dashed); at the right what is known in the end, with 1 sigma. Axes are for what follows "
-      "the first quarter. What the recording tells narrows as the vehicle turns and accelerates "
-      "and then stays within the bounds it had before; what it does not tell keeps the width of "
-      "its prior. A smoother has one value for the whole recording.");
+      fmt::format(
+          "{} and, where they are not far wider, those of the prior (dashed); at the right what is "
+          "known in the end, with 1 sigma. Axes are for the second half of the run. What the "
+          "recording tells narrows as the vehicle turns and accelerates and then stays within the "
+          "bounds it had before; what it does not tell keeps the width of its prior.",
+          is_smoothed
+              ? "Estimates of the run forward with their 3-sigma bounds, the one value that "
+                "smoothing finds for the whole recording with its own"
+              : "Estimates with their 3-sigma bounds"));
   const size_t count = rows.size();
   figure.columns = count == 4 ? 2 : static_cast<int>(std::min<size_t>(count, 3));
   const size_t columns = static_cast<size_t>(figure.columns);
@@ -239,12 +262,15 @@ std::vector<std::string> untold_texts(const std::vector<ShownRow>& rows) {
       listed_rows(rows, [](const ShownRow& row) { return !row.told() && row.left_prior(); });
   std::vector<std::string> texts;
   if (!untold.empty()) {
-    texts.push_back(untold + ": the recording does not tell it; it stays at its prior.");
+    texts.push_back(
+        untold +
+        ": the recording tells hardly anything of it; its sigma stays near that of the prior.");
   }
   if (!astray.empty()) {
-    texts.push_back(astray +
-                    ": the recording does not tell it, yet it went further than 3 sigmas of its "
-                    "prior: something else is taken for it. Do not believe the value.");
+    texts.push_back(
+        astray +
+        ": the recording tells hardly anything of it, yet it went further than 3 sigmas of its "
+        "prior: something else is taken for it. Do not believe the value.");
   }
   return texts;
 }

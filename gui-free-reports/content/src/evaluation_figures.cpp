@@ -251,6 +251,7 @@ namespace {
 
 Panel maximum_panel(const DriftCase& drift_case, const MethodOrder& order,
                     const Component& component) {
+  constexpr double kSmallest = 5, kRim = 2;  // [pt]
   Panel panel;
   panel.x = {"Outage", ""};
   panel.y = {component.name, "m", AxisKind::log};
@@ -258,8 +259,8 @@ Panel maximum_panel(const DriftCase& drift_case, const MethodOrder& order,
     const MethodCurves& curves = drift_case.methods[m];
     Series series = method_series(curves.method, order);
     series.mark = Mark::points;
-    series.size = 6.5;
-    series.opacity = 0.85;
+    // Those of methods that drift alike lie on each other: the later ones leave the earlier a rim.
+    series.size = kSmallest + kRim * static_cast<double>(drift_case.methods.size() - 1 - m);
     for (size_t i = 0; i < curves.outages.size(); ++i) {
       series.x.push_back(static_cast<double>(i + 1));
       series.y.push_back(curves.outages[i].*component.maximum);
@@ -404,7 +405,6 @@ namespace {
 
 constexpr size_t kMostOutagePanels = 12;
 
-/// How far errors over the ground reach to any side.
 /// An end of an axis about zero, a little beyond a number that holds `farthest` and has a tick at
 /// it or not far below, so that a small panel has three.
 double axis_end(double farthest) {
@@ -417,28 +417,36 @@ double axis_end(double farthest) {
   return kMargin * 10 * power;
 }
 
-double farthest_error(const DriftCase& drift_case, size_t outages) {
+Panel error_plane() {
+  Panel panel;
+  panel.x = {"East error", "m"};
+  panel.y = {"North error", "m"};
+  panel.equal_aspect = true;
+  return panel;
+}
+
+/// How far what is drawn reaches to any side.
+double farthest_of(const Panel& panel) {
   double farthest = 0;
-  for (const MethodCurves& curves : drift_case.methods) {
-    for (size_t i = 0; i < std::min(outages, curves.outages.size()); ++i) {
-      for (const auto* column : {&curves.outages[i].north_m, &curves.outages[i].east_m}) {
-        for (const double v : *column) {
-          if (std::isfinite(v)) farthest = std::max(farthest, std::abs(v));
-        }
+  for (const Series& series : panel.series) {
+    for (const auto* column : {&series.x, &series.y}) {
+      for (const double v : *column) {
+        if (std::isfinite(v)) farthest = std::max(farthest, std::abs(v));
       }
     }
   }
   return farthest;
 }
 
-Panel error_plane(double reach) {
-  Panel panel;
-  panel.x = {"East error", "m"};
-  panel.y = {"North error", "m"};
-  panel.x.min = panel.y.min = -reach;
-  panel.x.max = panel.y.max = reach;
-  panel.equal_aspect = true;
-  return panel;
+/// Errors of one panel may be a hundred times those of another.
+void scale_planes(Figure& figure) {
+  for (Panel& panel : figure.panels) {
+    const double reach = axis_end(farthest_of(panel));
+    for (Axis* axis : {&panel.x, &panel.y}) {
+      axis->min = -reach;
+      axis->max = reach;
+    }
+  }
 }
 
 Series end_mark(const OutageCurve& curve, const Series& look) {
@@ -453,9 +461,8 @@ Series end_mark(const OutageCurve& curve, const Series& look) {
   return mark;
 }
 
-Panel outage_error_panel(const DriftCase& drift_case, const MethodOrder& order, size_t outage,
-                         double reach) {
-  Panel panel = error_plane(reach);
+Panel outage_error_panel(const DriftCase& drift_case, const MethodOrder& order, size_t outage) {
+  Panel panel = error_plane();
   panel.title = fmt::format("Outage {}", outage + 1);
   for (const MethodCurves& curves : drift_case.methods) {
     if (outage >= curves.outages.size()) continue;
@@ -476,18 +483,19 @@ Figure outage_errors(const DriftCase& drift_case, const MethodOrder& order) {
   size_t outages = 0;
   for (const MethodCurves& c : drift_case.methods) outages = std::max(outages, c.outages.size());
   const size_t shown = std::min(outages, kMostOutagePanels);
-  Figure figure{"outage_errors_" + file_part(drift_case.name),
-                "The way of the error in single outages", outages_text(drift_case),
-                fmt::format("Estimate minus truth over the ground from the beginning of an outage, "
-                            "in the middle, to its end (mark), all at one scale. {} of {} outages, "
-                            "in order of time.",
-                            shown, outages)};
-  const double reach = axis_end(farthest_error(drift_case, shown));
+  Figure figure{
+      "outage_errors_" + file_part(drift_case.name), "The way of the error in single outages",
+      outages_text(drift_case),
+      fmt::format("Estimate minus truth over the ground from the beginning of an outage, "
+                  "in the middle, to its end (mark), each at a scale of its own. {} of {} "
+                  "outages, in order of time.",
+                  shown, outages)};
   figure.columns = static_cast<int>(std::clamp<size_t>(shown, 1, 4));
   figure.height_mm = 30 + 62.0 * std::ceil(static_cast<double>(std::max<size_t>(1, shown)) / 4);
   for (size_t i = 0; i < shown; ++i) {
-    figure.panels.push_back(outage_error_panel(drift_case, order, i, reach));
+    figure.panels.push_back(outage_error_panel(drift_case, order, i));
   }
+  scale_planes(figure);
   return figure;
 }
 
@@ -520,7 +528,7 @@ Series scatter_ellipse(const std::vector<double>& east, const std::vector<double
 }
 
 Panel end_error_panel(const MethodCurves& curves, const MethodOrder& order) {
-  Panel panel = error_plane(1);
+  Panel panel = error_plane();
   panel.title = curves.method;
   Series ends = method_series(curves.method, order);
   ends.label = "end of an outage";
@@ -538,33 +546,16 @@ Panel end_error_panel(const MethodCurves& curves, const MethodOrder& order) {
   return panel;
 }
 
-/// The same axes for all panels: what the widest of them asks for.
-void share_reach(Figure& figure) {
-  double farthest = 0;
-  for (const Panel& panel : figure.panels) {
-    for (const Series& series : panel.series) {
-      for (const auto* column : {&series.x, &series.y}) {
-        for (const double v : *column) farthest = std::max(farthest, std::abs(v));
-      }
-    }
-  }
-  const double reach = axis_end(farthest);
-  for (Panel& panel : figure.panels) {
-    for (Axis* axis : {&panel.x, &panel.y}) {
-      axis->min = -reach;
-      axis->max = reach;
-    }
-  }
-}
-
 }  // namespace
 
 Figure end_errors(const DriftCase& drift_case, const MethodOrder& order) {
-  Figure figure{"end_errors_" + file_part(drift_case.name), "Errors at the end of the outages",
-                outages_text(drift_case),
-                "Estimate minus truth over the ground at the last epoch of each outage, and the "
-                "ellipse that holds 95 % of a Gaussian with their mean and spread. A mean that is "
-                "far from zero is an error that all outages have."};
+  Figure figure{
+      "end_errors_" + file_part(drift_case.name), "Errors at the end of the outages",
+      outages_text(drift_case),
+      "Estimate minus truth over the ground at the last epoch of each outage, and the "
+      "ellipse that holds 95 % of a Gaussian with their mean and spread; each method at a "
+      "scale of its own. A mean that is far from zero is an error that all outages "
+      "have."};
   const size_t count = drift_case.methods.size();
   figure.columns = count == 4 ? 2 : static_cast<int>(std::clamp<size_t>(count, 1, 3));
   const double rows = std::ceil(static_cast<double>(count) / figure.columns);
@@ -572,7 +563,7 @@ Figure end_errors(const DriftCase& drift_case, const MethodOrder& order) {
   for (const MethodCurves& curves : drift_case.methods) {
     figure.panels.push_back(end_error_panel(curves, order));
   }
-  share_reach(figure);
+  scale_planes(figure);
   return figure;
 }
 
@@ -581,18 +572,20 @@ Figure ablation_bars(const std::vector<AblationBar>& bars, const MethodOrder& or
                 "What each part is worth",
                 {},
                 "RMS over the outages of the largest drift in each, with everything in use and "
-                "without one part. A part without which the drift grows is worth having."};
+                "with the part left out that is named below. A part without which the drift grows "
+                "is worth having."};
   figure.height_mm = 150;
   figure.share_x = true;
   for (const auto& [label, number] : {std::pair{"Horizontal RMS", &AblationBar::horizontal_m},
                                       std::pair{"Vertical RMS", &AblationBar::vertical_m}}) {
     Panel panel;
-    panel.x = {"", "", AxisKind::category};
+    panel.x = {"Left out", "", AxisKind::category};
     panel.y = {label, "m"};
     panel.y.from_zero = true;
     std::map<std::string, Series> by_method;
     for (const AblationBar& bar : bars) {
-      const std::string name = bar.without.empty() ? "as it is" : "without " + bar.without;
+      std::string name = bar.without.empty() ? "nothing" : bar.without;
+      std::replace(name.begin(), name.end(), '_', ' ');
       auto& names = panel.x.categories;
       auto place = std::find(names.begin(), names.end(), name);
       if (place == names.end()) place = names.insert(names.end(), name);
@@ -864,7 +857,7 @@ Figure outage_map(const OutageMap& map, const MethodOrder& order) {
   panel.equal_aspect = true;
   panel.scale_bar = true;
   panel.series.push_back(path_series(map.truth, "truth", Ink::light_gray, 2.2));
-  panel.series.push_back(path_series(map.truth_in_outages, "truth in outages", Ink::black, 2.2));
+  panel.series.push_back(path_series(map.truth_in_outages, "truth in outages", Ink::gray, 4));
   for (const OutageMap::Estimate& estimate : map.estimates) {
     const Series look = method_series(estimate.method, order);
     panel.series.push_back(path_series(estimate.path, estimate.method, look.ink, 1.6));
@@ -873,8 +866,9 @@ Figure outage_map(const OutageMap& map, const MethodOrder& order) {
   choose_map_unit(panel);
   Figure figure{
       "outage_map_" + file_part(map.name), "Ground track with outages", map.subtitle,
-      "The true path (grey, black where GNSS was withheld) and the estimates during outages. The "
-      "distance between black and coloured line at the end of an outage is its drift."};
+      "The true path (light grey; wide and dark where GNSS was withheld) and the estimates during "
+      "outages. The distance between the wide line and a thin one at the end of an outage is its "
+      "drift."};
   figure.height_mm = 190;
   figure.panels = {panel};
   return figure;

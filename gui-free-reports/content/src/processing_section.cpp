@@ -48,8 +48,8 @@ Table stage_table(const std::vector<StageTime>& stages) {
                           number_text(100 * stage.seconds / total, 1) + " %"});
   }
   table.note =
-      "Other: above all the way through the recording that finds clocks and noise first. `run "
-      "--profile` has the drawing, too.";
+      "Survey: the ways through the recording that find what is wrong with it, clocks and noise "
+      "before. `run --profile` has the drawing, too.";
   return table;
 }
 

@@ -57,6 +57,12 @@ double told_length(const std::string& text) {
   return error == std::errc() && std::string_view(end).substr(0, 2) == " s" ? length : 0;
 }
 
+std::vector<double> joined_rows(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
+  std::vector<double> row(a.begin(), a.end());
+  row.insert(row.end(), b.begin(), b.end());
+  return row;
+}
+
 std::vector<double> six(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return {a.x(), a.y(), a.z(), b.x(), b.y(), b.z()};
 }
@@ -242,6 +248,7 @@ RunData::RunData(const state::Mounting& mounting, const state::Told& told)
                       slow_sigmas(prior, slow),
                       {},
                       {},
+                      DecimatedTable(columns),
                       DecimatedTable(columns)});
   }
 }
@@ -306,9 +313,17 @@ void RunData::add_blocks(double t, const state::Epoch& epoch) {
   for (BlockHistory& block : blocks) {
     block.last = slow_values(epoch, block.slow);
     block.last_sigma = slow_sigmas(epoch, block.slow);
-    std::vector<double> row(block.last.begin(), block.last.end());
-    row.insert(row.end(), block.last_sigma.begin(), block.last_sigma.end());
-    block.rows.add(t, row);
+    block.rows.add(t, joined_rows(block.last, block.last_sigma));
+  }
+}
+
+void RunData::add_forward(const state::Epoch& epoch) {
+  if (blocks.empty()) return;
+  const double t = seconds(epoch.t_ns);
+  const state::Epoch known = state::as_users_know(epoch, told_);
+  for (BlockHistory& block : blocks) {
+    block.forward.add(t,
+                      joined_rows(slow_values(known, block.slow), slow_sigmas(known, block.slow)));
   }
 }
 
@@ -324,8 +339,7 @@ void RunData::add(const state::FixResult& fix) {
   const bool used = fix.verdict == state::FixVerdict::used;
   ++qualities[fix.quality];
   ++verdicts[fix.verdict];
-  watch_verdict(t, fix.verdict);
-  fix_types.add(t, {static_cast<double>(fix.quality), used ? 0.0 : 1.0});
+  watch(t, fix);
   if (!plane_) origin_ = "first fix";
   const Eigen::Vector3d p = place(fix.antenna);
   const Eigen::Vector3d sigma = sigma_of(fix.innovation_covariance);
@@ -346,18 +360,14 @@ void RunData::add(const state::FixResult& fix) {
 }
 
 /// A stretch goes on as long as all fixes fare alike and none is missing.
-void RunData::watch_verdict(double t, state::FixVerdict verdict) {
+void RunData::watch(double t, const state::FixResult& fix) {
   const double step = t - last_fix_;
-  const bool goes_on =
-      last_verdict_ == verdict && step >= 0 && step <= all_fix_steps_.longest_usual();
-  Stretches& stretches = verdict_stretches[verdict];
-  if (goes_on) {
-    stretches.extend(t);
-  } else {
-    stretches.begin(t);
-  }
-  if (verdict != state::FixVerdict::out_of_order) all_fix_steps_.observe(t);
-  last_verdict_ = verdict;
+  const bool none_missing = step >= 0 && step <= all_fix_steps_.longest_usual();
+  verdict_stretches[fix.verdict].extend_or_begin(t, none_missing && last_verdict_ == fix.verdict);
+  quality_stretches[fix.quality].extend_or_begin(t, none_missing && last_quality_ == fix.quality);
+  if (fix.verdict != state::FixVerdict::out_of_order) all_fix_steps_.observe(t);
+  last_verdict_ = fix.verdict;
+  last_quality_ = fix.quality;
   last_fix_ = t;
 }
 

@@ -63,6 +63,7 @@ struct BlockHistory {
   Eigen::VectorXd prior, prior_sigma;
   Eigen::VectorXd last, last_sigma;
   plot::DecimatedTable rows;
+  plot::DecimatedTable forward;  ///< the same of the forward run of a smoother
 };
 
 /// Normalized squares of one kind of measurement over their dimension.
@@ -86,6 +87,8 @@ class Stretches {
   void extend(double t);
 
   bool empty() const { return intervals_.empty(); }
+  /// What began goes on, or something begins.
+  void extend_or_begin(double t, bool goes_on) { goes_on ? extend(t) : begin(t); }
   /// In order of their begins.
   std::vector<Interval> intervals() const;
 
@@ -193,6 +196,8 @@ class RunData {
   double statistics_from() const { return statistics_from_; }  ///< [s]
 
   void add(const state::Epoch& epoch);
+  /// Of the forward run of a smoother.
+  void add_forward(const state::Epoch& epoch);
   void add(const state::FixResult& fix);
   void add(const state::ObservationResult& result);
   void add(const state::Notice& notice);
@@ -238,8 +243,7 @@ class RunData {
   Triad postfit;              ///< used fixes; sigma not known
   std::vector<BlockHistory> blocks;
   std::map<std::string, SquareHistory, std::less<>> aids;
-  plot::DecimatedTable fix_types{2};  ///< quality, rejected (0 or 1)
-  plot::DecimatedTable nis{2};        ///< used fixes: NIS, running mean
+  plot::DecimatedTable nis{2};  ///< used fixes: NIS, running mean
   plot::DecimatedTable rejected_nis{1};
   plot::DecimatedTable position_nees{1};
   plot::DecimatedTable velocity_nees{1};
@@ -254,6 +258,7 @@ class RunData {
   /// What to call the fixes that were not used as they are.
   std::string not_used_name() const;
   std::map<state::FixVerdict, Stretches> verdict_stretches;
+  std::map<FixQuality, Stretches> quality_stretches;
   StepWatch imu_steps{0.2};
   StepWatch fix_steps{4.0};  ///< between used fixes
   StepWatch epoch_steps{3.0};
@@ -273,7 +278,7 @@ class RunData {
   void add_fix(const GnssFix& fix);
   void add_increment(const ImuIncrement& increment);
   void add_blocks(double t, const state::Epoch& epoch);
-  void watch_verdict(double t, state::FixVerdict verdict);
+  void watch(double t, const state::FixResult& fix);
 
   state::Mounting mounting_;
   state::Told told_;
@@ -284,6 +289,7 @@ class RunData {
   const char* origin_ = "first epoch";
   StepWatch all_fix_steps_{4.0};
   std::optional<state::FixVerdict> last_verdict_;
+  std::optional<FixQuality> last_quality_;
   std::optional<double> last_imu_;      // [s]
   double last_fix_ = 0;                 // [s], whatever became of it
   std::optional<double> last_heading_;  // [rad], continuous

@@ -204,6 +204,20 @@ void show_bearing(const Curve& curve, size_t continuous, Axis& axis) {
   axis.max = 360;
 }
 
+/// Of separations the line tells; bounds that were wide before a forward run knew better would make
+/// it a flat one.
+void leave_room_for_line(Panel& panel) {
+  constexpr double kWidest = 4;  // of bounds, in the largest number of the line
+  const std::vector<double>& values = panel.series.back().y;
+  double largest = 0;
+  for (const double value : values) {
+    if (std::isfinite(value)) largest = std::max(largest, std::abs(value));
+  }
+  if (!(largest > 0) || y_span(panel).max <= kWidest * largest) return;
+  panel.y.min = -kWidest * largest;
+  panel.y.max = kWidest * largest;
+}
+
 Panel triad_panel(const RunData& data, const TriadFigure& look, const DecimatedTable::Rows& rows,
                   size_t axis) {
   Curve curve{rows.x, rows.columns[axis], rows.columns[axis + 3]};
@@ -225,6 +239,7 @@ Panel triad_panel(const RunData& data, const TriadFigure& look, const DecimatedT
   // A run forward begins with bounds that would leave no room for all that comes.
   if (data.is_smoothed() && look.triad != &RunData::position_separation)
     panel.series.front().range_role = RangeRole::most;
+  if (look.noun == kSeparation) leave_room_for_line(panel);
   return panel;
 }
 
@@ -248,8 +263,13 @@ Figure triad_figure(const RunData& data, const TriadFigure& look, const std::str
       look.caption + std::string(data.is_smoothed() ? look.of_smoothed : look.of_forward));
   for (size_t i = 0; i < 3; ++i) figure.panels.push_back(triad_panel(data, look, rows, i));
   if (look.is_error) add_notes(triad, figure);
-  for (size_t i = 0; i < 3; ++i) tell_narrow_bounds(rows.columns[i + 3], figure.panels[i]);
-  if (std::any_of(figure.panels.begin(), figure.panels.end(), is_cut)) {
+  bool any_cut = false;
+  for (size_t i = 0; i < 3; ++i) {
+    const bool cut = is_cut(figure.panels[i]);
+    tell_hidden_bounds(rows.columns[i + 3], cut, figure.panels[i]);
+    any_cut = any_cut || cut;
+  }
+  if (any_cut) {
     figure.caption += " Bounds wider than the axes are cut.";
   }
   return figure;
@@ -481,6 +501,13 @@ std::optional<Figure> innovation_figure(const RunData& data, const std::string& 
   return figure;
 }
 
+StepFacts imu_step_facts(const RunData& data) {
+  const ImuGaps gaps = data.imu_gaps();
+  StepFacts facts{gaps.count, gaps.duration, data.imu_steps.longest()};
+  for (const Interval& gap : gaps.longest) facts.longest = std::max(facts.longest, gap.length());
+  return facts;
+}
+
 std::optional<Figure> postfit_figure(const RunData& data, const std::string& subtitle) {
   if (data.postfit.empty()) return std::nullopt;
   Figure figure = stacked_figure(
@@ -513,16 +540,17 @@ std::optional<Figure> postfit_figure(const RunData& data, const std::string& sub
 
 namespace {
 
-/// `gaps`: how many there are, of samples that were left out, too.
-std::string step_note(const StepWatch& watch, size_t gaps) {
+std::string step_note(const StepWatch& watch, const StepFacts& facts) {
+  const size_t gaps = facts.gaps;
   const size_t left_out = gaps - std::min(gaps, watch.gaps());
   std::string note = fmt::format("{} Hz · longest {} s · {} gap{}", significant_text(watch.rate()),
-                                 significant_text(watch.longest()), gaps, gaps == 1 ? "" : "s");
+                                 significant_text(facts.longest), gaps, gaps == 1 ? "" : "s");
+  if (left_out == gaps && gaps > 0) return note + " of samples left out";
   if (left_out > 0) note += fmt::format(", {} of them of samples left out", left_out);
   return note;
 }
 
-Panel step_panel(const RunData& data, const StepWatch& watch, size_t gaps,
+Panel step_panel(const RunData& data, const StepWatch& watch, const StepFacts& facts,
                  const std::string& label) {
   Panel panel = time_panel(data, {label, "s"});
   const DecimatedTable::Rows rows = watch.steps().rows();
@@ -530,7 +558,7 @@ Panel step_panel(const RunData& data, const StepWatch& watch, size_t gaps,
   panel.series.back().mark = Mark::steps;
   panel.series.back().size = 0.9;
   panel.series.back().in_legend = false;
-  panel.note = step_note(watch, gaps);
+  panel.note = step_note(watch, facts);
   if (watch.longest() * watch.rate() > 20) {
     panel.y.kind = AxisKind::log;
   } else if (watch.longest() < 0.5) {
@@ -547,31 +575,17 @@ Panel step_panel(const RunData& data, const StepWatch& watch, size_t gaps,
 Panel type_panel(const RunData& data) {
   Panel panel = time_panel(data, {});
   panel.y.kind = AxisKind::category;
-  const DecimatedTable::Rows rows = data.fix_types.rows();
-  std::map<int, double> place;
-  if (data.verdicts.size() > data.verdicts.count(state::FixVerdict::used)) {
-    panel.y.categories.emplace_back(data.not_used_name());
+  Lane not_used{data.not_used_name(), "rejected", Ink::black};
+  for (const auto& [verdict, stretches] : data.verdict_stretches) {
+    if (verdict == state::FixVerdict::used) continue;
+    for (const Interval& each : stretches.intervals()) not_used.intervals.push_back(each);
   }
-  for (const auto& [quality, count] : data.qualities) {
-    place[static_cast<int>(quality)] = static_cast<double>(panel.y.categories.size());
-    panel.y.categories.push_back(std::string(words_of(quality)));
+  if (!not_used.intervals.empty()) add_lane(not_used, panel);
+  for (const auto& [quality, stretches] : data.quality_stretches) {
+    const std::string name(words_of(quality));
+    add_lane({name, name, kQualityInks[static_cast<size_t>(quality)], stretches.intervals()},
+             panel);
   }
-  Series types = points("fix type", Ink::gray, 12, {}, {});
-  Series rejected = points("rejected", Ink::black, 12, {}, {});
-  types.shape = rejected.shape = Shape::tick;
-  types.in_legend = rejected.in_legend = false;
-  types.categories = quality_categories();
-  for (size_t i = 0; i < rows.x.size(); ++i) {
-    if (!std::isfinite(rows.columns[0][i])) continue;
-    types.x.push_back(rows.x[i]);
-    types.y.push_back(place[static_cast<int>(rows.columns[0][i])]);
-    types.category.push_back(rows.columns[0][i]);
-    if (rows.columns[1][i] == 0) continue;
-    rejected.x.push_back(rows.x[i]);
-    rejected.y.push_back(0);
-  }
-  panel.series.push_back(types);
-  if (!rejected.x.empty()) panel.series.push_back(rejected);
   return panel;
 }
 
@@ -583,14 +597,15 @@ std::optional<Figure> data_health_figure(const RunData& data, const std::string&
       "Time between IMU samples, time between GNSS fixes that were used, and fix types over time. "
       "Healthy intervals lie on one level; every gap stands out above it.");
   if (data.imu_steps.stamps() > 1) {
-    figure.panels.push_back(
-        step_panel(data, data.imu_steps, data.imu_gaps().count, "IMU interval"));
+    figure.panels.push_back(step_panel(data, data.imu_steps, imu_step_facts(data), "IMU interval"));
   }
   if (data.fix_steps.stamps() > 1) {
     figure.panels.push_back(
-        step_panel(data, data.fix_steps, data.fix_steps.gaps(), "Used-fix interval"));
+        step_panel(data, data.fix_steps,
+                   {data.fix_steps.gaps(), data.fix_steps.gap_duration(), data.fix_steps.longest()},
+                   "Used-fix interval"));
   }
-  if (!data.fix_types.empty()) {
+  if (!data.quality_stretches.empty()) {
     figure.panels.push_back(type_panel(data));
     figure.panels.back().height_share =
         0.25 + 0.15 * static_cast<double>(figure.panels.back().y.categories.size());

@@ -10,6 +10,14 @@
 /// The figures of a run; none where there are no data for it. `subtitle` names the run.
 namespace foucault::content {
 
+/// Steps between samples; those over samples that were left out are steps, too.
+struct StepFacts {
+  size_t gaps = 0;
+  double gap_duration = 0;  ///< [s]
+  double longest = 0;       ///< [s]
+};
+StepFacts imu_step_facts(const RunData& data);
+
 std::optional<plot::Figure> ground_track(const RunData& data, const std::string& subtitle);
 /// Position, velocity, attitude, and how sure the estimator is of them.
 std::vector<plot::Figure> solution_figures(const RunData& data, const std::string& subtitle);

@@ -20,18 +20,19 @@ namespace {
 constexpr double kTimeMargin = 0.01;    // of the run
 constexpr double kStackedHeight = 172;  // [mm], of three panels above each other
 
+constexpr double kReach = 0.34;  // of a bar, above and below the middle of its lane
+
+void add_stroke(double t, double level, Series& strokes) {
+  strokes.x.insert(strokes.x.end(), {t, t, t});
+  strokes.y.insert(strokes.y.end(), {level - kReach, level + kReach, kNoValue});
+}
+
 bool overlaps(const Interval& a, const std::vector<Interval>& others) {
   return std::any_of(others.begin(), others.end(),
                      [&](const Interval& b) { return a.begin < b.end && b.begin < a.end; });
 }
 
 }  // namespace
-
-std::string clock_text(int64_t t_ns) {
-  const GpsTime gps = unix_to_gps(t_ns);
-  return fmt::format("{}, GPS week {} {:.3f} s", utc_text(t_ns), gps.week,
-                     static_cast<double>(gps.tow_ns) * 1e-9);
-}
 
 Interval whole_run(const RunData& data) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -80,6 +81,27 @@ Panel time_panel(const RunData& data, const Axis& y) {
   return panel;
 }
 
+void add_lane(const Lane& lane, Panel& panel) {
+  constexpr double kSeen = 0.002;  // of the axis
+  const double least_length = kSeen * x_span(panel).width();
+  const double level = static_cast<double>(panel.y.categories.size());
+  panel.y.categories.push_back(lane.label);
+  Series bars{{}, lane.column, Mark::band, lane.ink};
+  Series strokes = line("", lane.ink, {}, {});
+  strokes.column = lane.column + " moment";
+  strokes.size = 1.5;
+  for (const Interval& interval : lane.intervals) {
+    if (interval.length() < least_length) {
+      add_stroke((interval.begin + interval.end) / 2, level, strokes);
+    } else {
+      add_level(interval.begin, interval.end, level - kReach, level + kReach, bars);
+    }
+  }
+  for (Series* series : {&bars, &strokes}) {
+    if (!series->x.empty()) panel.series.push_back(std::move(*series));
+  }
+}
+
 Figure stacked_figure(const std::string& name, const std::string& title,
                       const std::string& subtitle, const std::string& caption) {
   Figure figure{name, title, subtitle, caption};
@@ -105,7 +127,7 @@ Series bounds(const std::vector<double>& x, const std::vector<double>& centre,
   return series;
 }
 
-void tell_narrow_bounds(const std::vector<double>& sigma, Panel& panel) {
+void tell_hidden_bounds(const std::vector<double>& sigma, bool cut, Panel& panel) {
   constexpr double kSeen = 1.0 / 40;  // of the axis: twice as wide as the line in its middle
   std::vector<double> finite;
   std::copy_if(sigma.begin(), sigma.end(), std::back_inserter(finite),
@@ -114,7 +136,7 @@ void tell_narrow_bounds(const std::vector<double>& sigma, Panel& panel) {
   const double seen = kSeen * y_span(panel).width() / 6;
   const auto middle = finite.begin() + static_cast<std::ptrdiff_t>(finite.size() / 2);
   std::nth_element(finite.begin(), middle, finite.end());
-  if (*middle >= seen) return;
+  if (*middle >= seen && !cut) return;
   const std::string unit = (shown_unit(panel.y) == "°" ? "" : " ") + shown_unit(panel.y);
   const auto width = [&](double s) {
     return significant_text(3 * panel.y.shown_factor * s, 2) + unit;

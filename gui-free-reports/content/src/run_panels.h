@@ -19,14 +19,21 @@ constexpr std::array<plot::Ink, 3> kTriadInks{plot::Ink::blue, plot::Ink::vermil
 constexpr std::array<plot::Dash, 3> kTriadDashes{plot::Dash::none, plot::Dash::dashes,
                                                  plot::Dash::dash_dot};
 
-/// UTC with GPS week and second: both clocks that readers use.
-std::string clock_text(int64_t t_ns);
-
 /// From the first to the last stamp of anything; of no length without data.
 Interval whole_run(const RunData& data);
 
 /// Outages, and gaps that nobody asked for.
 std::vector<plot::Shade> time_shades(const RunData& data);
+
+/// A row of a panel whose y axis has names, with bars where something went on.
+struct Lane {
+  std::string label;
+  std::string column;
+  plot::Ink ink = plot::Ink::blue;
+  std::vector<Interval> intervals = {};
+};
+/// Above those that are there; strokes where bars would be too short to be seen.
+void add_lane(const Lane& lane, plot::Panel& panel);
 
 /// A panel over the time of the whole run, shaded.
 plot::Panel time_panel(const RunData& data, const plot::Axis& y);
@@ -39,9 +46,9 @@ plot::Figure stacked_figure(const std::string& name, const std::string& title,
 plot::Series bounds(const std::vector<double>& x, const std::vector<double>& centre,
                     const std::vector<double>& sigma, const std::string& column);
 
-/// Says in numbers how wide bounds are that are too narrow to be seen, and takes them out of the
-/// legend; `panel` has its series, the bounds first.
-void tell_narrow_bounds(const std::vector<double>& sigma, plot::Panel& panel);
+/// Says in numbers how wide bounds are that are too narrow to be seen, which are taken out of the
+/// legend, or cut by the axes; `panel` has its series, the bounds first.
+void tell_hidden_bounds(const std::vector<double>& sigma, bool cut, plot::Panel& panel);
 
 /// Both ends of the band, over the time of `x`.
 void add_bounds(const Band& band, const std::string& label, const std::vector<double>& x,

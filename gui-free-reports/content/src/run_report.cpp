@@ -50,13 +50,11 @@ std::vector<std::string> sampling_row(const char* name, const StepWatch& watch) 
 
 /// Samples that were there and left out are missing, too.
 std::vector<std::string> imu_sampling_row(const RunData& data) {
-  const ImuGaps gaps = data.imu_gaps();
-  double longest = data.imu_steps.longest();
-  for (const Interval& gap : gaps.longest) longest = std::max(longest, gap.length());
+  const StepFacts facts = imu_step_facts(data);
   std::vector<std::string> row = sampling_row("IMU samples", data.imu_steps);
-  row[3] = significant_text(longest) + " s";
-  row[4] = std::to_string(gaps.count);
-  row[5] = significant_text(gaps.duration) + " s";
+  row[3] = significant_text(facts.longest) + " s";
+  row[4] = std::to_string(facts.gaps);
+  row[5] = significant_text(facts.gap_duration) + " s";
   return row;
 }
 
@@ -196,6 +194,8 @@ void RunReport::notice(const state::Notice& notice) { collector_->data.add(notic
 void RunReport::reference_error(const state::Epoch& epoch, const state::ReferenceError& error) {
   collector_->data.add(epoch, error);
 }
+
+void RunReport::forward_epoch(const state::Epoch& epoch) { collector_->data.add_forward(epoch); }
 
 void RunReport::separation(const state::Separation& separation) {
   collector_->data.add(separation);

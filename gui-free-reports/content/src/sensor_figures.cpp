@@ -118,6 +118,19 @@ std::optional<Figure> imu_spectrum_figure(const RunData& data, const std::string
   return figure;
 }
 
+namespace {
+
+/// Where all intervals are alike, one column must look like one.
+void show_neighbours(double shortest, double longest, Axis& axis) {
+  constexpr double kLeast = 2;  // longest over shortest
+  if (longest >= kLeast * shortest) return;
+  const double room = std::sqrt(kLeast * shortest / longest);
+  axis.min = shortest / room;
+  axis.max = longest * room;
+}
+
+}  // namespace
+
 std::optional<Figure> imu_intervals_figure(const RunData& data, const std::string& subtitle) {
   const IntervalHistogram::Bins bins = data.imu_intervals.bins();
   if (bins.count.empty()) return std::nullopt;
@@ -125,6 +138,7 @@ std::optional<Figure> imu_intervals_figure(const RunData& data, const std::strin
   panel.x = {"IMU interval", "ms", AxisKind::log};
   panel.y = {"Samples", "", AxisKind::log};
   panel.y.min = 0.7;
+  show_neighbours(1000 * bins.corner.front(), 1000 * bins.corner.back(), panel.x);
   Series series{"samples", "samples", Mark::band, Ink::blue};
   series.in_legend = false;
   for (size_t i = 0; i < bins.count.size(); ++i) {

@@ -159,8 +159,6 @@ std::string summary(const RunData& data) {
       plural(fixes(data), "fix", "fixes"));
 }
 
-double gps_second(int64_t t_ns) { return static_cast<double>(unix_to_gps(t_ns).tow_ns) * 1e-9; }
-
 Table notice_table(const RunData& data) {
   Table table;
   table.title = "What happened on the way";
@@ -172,7 +170,7 @@ Table notice_table(const RunData& data) {
   for (const state::Notice& notice : notices) {
     const double t = seconds_between(data.start_ns().value_or(notice.t_ns), notice.t_ns);
     table.rows.push_back({number_text(t, 2) + " s", notice_name(notice.kind), notice.text,
-                          utc_text(notice.t_ns), fmt::format("{:.3f}", gps_second(notice.t_ns))});
+                          utc_text(notice.t_ns), gps_second_text(notice.t_ns)});
   }
   if (data.notices_seen > data.notices.size()) {
     table.note = fmt::format("{} more.", data.notices_seen - data.notices.size());
@@ -181,13 +179,6 @@ Table notice_table(const RunData& data) {
 }
 
 // ---- lanes
-
-struct Lane {
-  std::string label;
-  std::string column;
-  Ink ink = Ink::blue;
-  std::vector<Interval> intervals;
-};
 
 /// From what is below to what is above.
 std::vector<Lane> lanes(const RunData& data) {
@@ -218,32 +209,6 @@ std::vector<Interval> imu_stretches(const RunData& data) {
   }
   stretches.push_back({begin, imu.last()});
   return stretches;
-}
-
-constexpr double kReach = 0.34;  // of a bar, above and below the middle of its lane
-void add_stroke(double t, double level, Series& strokes) {
-  strokes.x.insert(strokes.x.end(), {t, t, t});
-  strokes.y.insert(strokes.y.end(), {level - kReach, level + kReach, kNoValue});
-}
-
-/// Bars, and strokes where they would be too short to be seen.
-void add_lane(const Lane& lane, double least_length, Panel& panel) {
-  const double level = static_cast<double>(panel.y.categories.size());
-  panel.y.categories.push_back(lane.label);
-  Series bars{{}, lane.column, Mark::band, lane.ink};
-  Series strokes = line("", lane.ink, {}, {});
-  strokes.column = lane.column + " moment";
-  strokes.size = 1.5;
-  for (const Interval& interval : lane.intervals) {
-    if (interval.length() < least_length) {
-      add_stroke((interval.begin + interval.end) / 2, level, strokes);
-    } else {
-      add_level(interval.begin, interval.end, level - kReach, level + kReach, bars);
-    }
-  }
-  for (Series* series : {&bars, &strokes}) {
-    if (!series->x.empty()) panel.series.push_back(std::move(*series));
-  }
 }
 
 /// Notices from outside the recording are drawn at its ends.
@@ -286,11 +251,10 @@ std::optional<Figure> timeline_figure(const RunData& data, const std::string& su
   Panel panel = time_panel(data, {});
   remove_imu_shades(panel);
   panel.y.kind = AxisKind::category;
-  const double least_length = 0.002 * whole.length();
   for (const std::string_view lane : {kNotices, kAlignment}) add_events(data, lane, whole, panel);
-  for (const Lane& lane : lanes(data)) add_lane(lane, least_length, panel);
+  for (const Lane& lane : lanes(data)) add_lane(lane, panel);
   if (data.imu_steps.stamps() > 1) {
-    add_lane({"IMU", "IMU", Ink::gray, imu_stretches(data)}, least_length, panel);
+    add_lane({"IMU", "IMU", Ink::gray, imu_stretches(data)}, panel);
   }
   Figure figure{
       "timeline", "Timeline", subtitle,

@@ -72,8 +72,10 @@ TEST(CalibrationSection, BoundsOfTheEstimateAndOfThePrior) {
 TEST(CalibrationSection, NamesWhatTheRecordingDoesNotTell) {
   const Section section = section_of(page_of(told()), "Calibration");
   ASSERT_EQ(section.paragraphs.size(), 1U);
-  EXPECT_EQ(section.paragraphs[0],
-            "Antenna, down: the recording does not tell it; it stays at its prior.");
+  EXPECT_EQ(
+      section.paragraphs[0],
+      "Antenna, down: the recording tells hardly anything of it; its sigma stays near that of "
+      "the prior.");
   ASSERT_EQ(section.tables.at(0).rows.size(), 6U);
   EXPECT_EQ(section.tables[0].rows[2],
             (std::vector<std::string>{"Antenna, down", "m", "−0.790", "0.048", "0.0500", "96 %"}));
@@ -99,6 +101,35 @@ TEST(CalibrationSection, WarnsOfWhatWentAstray) {
   EXPECT_EQ(words[0].find("Gyro scale, x: "), 0U);
   EXPECT_EQ(words[1].find("Gyro scale, y: "), 0U);
   EXPECT_NE(words[1].find("Do not believe"), std::string::npos);
+}
+
+/// A smoother has one value for the whole recording: what became known when, its run forward tells.
+TEST(CalibrationSection, ASmoothedRunShowsTheForwardOneAndItsOwnValue) {
+  state::Told told;
+  told.layout.add(state::block::wheel_scale, 0.05);
+  RunReport report(kLabels, state::Mounting{}, told);
+  for (int i = 0; i < 100; ++i) {
+    state::Epoch forward = state::with_slow_blocks({}, told.layout);
+    forward.t_ns = nanoseconds(i);
+    forward.slow.setConstant(0.02);
+    state::slow_part(forward.covariance) /= 1 + i;
+    report.forward_epoch(forward);
+    state::Epoch smoothed = forward;
+    smoothed.slow.setConstant(0.01);
+    state::slow_part(smoothed.covariance).setConstant(0.001 * 0.001);
+    report.epoch(smoothed);
+  }
+  const Figure figure = figure_of(report.page(), "calibration_vehicle");
+  const Panel& panel = figure.panels.at(0);
+  EXPECT_NEAR(series_of(panel, "run forward").y.at(50), 2, 1e-9);
+  const Series& band = series_of(panel, "±3σ");
+  EXPECT_GT(band.upper.front() - band.lower.front(), 9 * (band.upper.back() - band.lower.back()));
+  const Series& smoothed = series_of(panel, "smoothed");
+  EXPECT_NEAR(smoothed.y.at(0), 1, 1e-9);
+  EXPECT_EQ(smoothed.x, (std::vector<double>{0, 99}));
+  EXPECT_EQ(panel.note, "1.00 ± 0.10 %");
+  EXPECT_LT(*panel.y.min, 0.7) << "its bounds are on the axis";
+  EXPECT_NE(figure.caption.find("run forward"), std::string::npos);
 }
 
 TEST(CalibrationSection, EveryBlockHasItsPanels) {

@@ -243,20 +243,44 @@ TEST(EvaluationFigures, AMethodLooksTheSameWhateverStandsBesideIt) {
   EXPECT_EQ(beside.dash, alone.dash);
 }
 
-TEST(EvaluationFigures, ErrorsInOutagesShareTheirScale) {
+TEST(EvaluationFigures, MaximaOfMethodsThatDriftAlikeAreAllSeen) {
+  const std::vector<Series> series =
+      maximum_drifts(made_up_case("X", 1e-3), kMethods).panels.at(0).series;
+  ASSERT_GE(series.size(), 2U);
+  for (size_t i = 1; i < series.size(); ++i) {
+    EXPECT_LT(series[i].size, series[i - 1].size - 1) << "drawn over a larger one";
+  }
+}
+
+TEST(EvaluationFigures, ErrorsInOutagesFillTheirPanels) {
   const Figure figure = outage_errors(made_up_case("X", 1e-3), kMethods);
   EXPECT_EQ(figure.panels.size(), 12U) << "of twenty";
-  double farthest = 0;
   for (const Panel& panel : figure.panels) {
-    EXPECT_EQ(panel.x.max, figure.panels[0].x.max);
     EXPECT_EQ(*panel.x.min, -*panel.x.max);
+    EXPECT_EQ(panel.y.max, panel.x.max);
+    double farthest = 0;
     for (const Series& series : panel.series) {
       for (const double x : series.x) farthest = std::max(farthest, std::abs(x));
+      for (const double y : series.y) farthest = std::max(farthest, std::abs(y));
     }
+    // Round numbers are 5 / 3 apart at most.
+    EXPECT_GE(*panel.x.max, farthest);
+    EXPECT_LE(*panel.x.max, 1.08 * 5 / 3 * farthest);
   }
-  // Round numbers are 5 / 3 apart at most.
-  EXPECT_GE(*figure.panels[0].x.max, farthest);
-  EXPECT_LE(*figure.panels[0].x.max, 1.08 * 5 / 3 * farthest);
+}
+
+TEST(EvaluationFigures, SmallErrorsAtTheEndAreNotDrawnAtTheScaleOfLargeOnes) {
+  DriftCase two{"X", {{"ekf", {}}, {"batch", {}}}};
+  for (const double sign : {-1.0, 0.5, 1.0}) {
+    OutageCurve large, small;
+    large.east_m = large.north_m = {20 * sign};
+    small.east_m = small.north_m = {0.02 * sign};
+    two.methods[0].outages.push_back(large);
+    two.methods[1].outages.push_back(small);
+  }
+  const Figure figure = end_errors(two, {"ekf", "batch"});
+  EXPECT_GT(*figure.panels[0].x.max, 20);
+  EXPECT_LT(*figure.panels[1].x.max, 0.2);
 }
 
 TEST(EvaluationFigures, TheEllipseHoldsNineteenOfTwenty) {
@@ -278,10 +302,10 @@ TEST(EvaluationFigures, TheEllipseHoldsNineteenOfTwenty) {
 }
 
 TEST(EvaluationFigures, AblationHasABarAPart) {
-  const Figure figure =
-      ablation_bars({{"ekf", "", 1, 2}, {"ekf", "wheels", 3, 4}, {"batch", "", 5, 6}}, kMethods);
-  EXPECT_EQ(figure.panels[0].x.categories,
-            (std::vector<std::string>{"as it is", "without wheels"}));
+  const Figure figure = ablation_bars(
+      {{"ekf", "", 1, 2}, {"ekf", "wheel_speed", 3, 4}, {"batch", "", 5, 6}}, kMethods);
+  EXPECT_EQ(figure.panels[0].x.categories, (std::vector<std::string>{"nothing", "wheel speed"}));
+  EXPECT_EQ(figure.panels[0].x.label, "Left out");
   EXPECT_EQ(figure.panels[1].series[1].y, (std::vector<double>{2, 4})) << "ekf after batch";
 }
 

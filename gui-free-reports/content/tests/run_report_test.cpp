@@ -291,8 +291,62 @@ TEST(RunReport, GapsOfSamplesThatWereLeftOutCount) {
   const std::vector<std::string>& row = section_of(page, "Data health").tables.at(0).rows.at(0);
   EXPECT_EQ(row.at(4), "1");
   EXPECT_EQ(row.at(5), "1.50 s");
+  EXPECT_NE(figure_of(page, "data_health").panels.at(0).note.find("longest 1.50 s · 1 gap of "),
+            std::string::npos)
+      << "as the table says";
   EXPECT_NE(section_of(page, "Timeline").paragraphs.at(0).find("1.50 s without IMU in 1 hole"),
             std::string::npos);
+}
+
+TEST(RunReport, IntervalsThatAreAllAlikeAreOneNarrowColumn) {
+  RunReport report(kLabels, state::Mounting{});
+  for (int i = 1; i < 100; ++i) {
+    ImuIncrement increment;
+    increment.t_begin_ns = nanoseconds(0.01 * (i - 1));
+    increment.t_end_ns = nanoseconds(0.01 * i);
+    report.measurement(increment);
+  }
+  const Panel panel = figure_of(report.page(), "imu_intervals").panels.at(0);
+  EXPECT_NEAR(*panel.x.max / *panel.x.min, 2, 1e-9);
+  EXPECT_NEAR(std::sqrt(*panel.x.max * *panel.x.min), 10, 0.2) << "in the middle";
+}
+
+/// Stretches, not a stroke a fix: fixes a second apart are no gaps.
+TEST(RunReport, FixTypesAreBarsWhereNoneIsMissing) {
+  RunReport report(kLabels, state::Mounting{});
+  for (int i = 0; i < 300; ++i) {
+    state::FixResult fix;
+    fix.t_ns = nanoseconds(i);
+    fix.quality = i < 200 ? FixQuality::fixed_rtk : FixQuality::single;
+    if (i == 50) fix.verdict = state::FixVerdict::gated;
+    report.fix(fix);
+  }
+  const Panel types = figure_of(report.page(), "data_health").panels.back();
+  EXPECT_EQ(types.y.categories,
+            (std::vector<std::string>{"rejected", "single point", "RTK fixed"}));
+  ASSERT_EQ(types.series.size(), 3U);
+  EXPECT_EQ(types.series[0].x.at(0), 50) << "a stroke, too short for a bar";
+  EXPECT_EQ(types.series[1].x.size(), 3U) << "one bar and the break behind it";
+  EXPECT_EQ(types.series[1].x.at(0), 200);
+  EXPECT_EQ(types.series[1].x.at(1), 299);
+}
+
+/// A separation is read from its line; bounds of a forward run that did not yet know are cut, and
+/// said.
+TEST(RunReport, WideBoundsLeaveTheSeparationRoom) {
+  RunReport report(kLabels, state::Mounting{});
+  for (int t = 0; t < 100; ++t) {
+    state::Separation separation;
+    separation.t_ns = nanoseconds(t);
+    separation.velocity_n.x() = 0.1 * std::sin(t);
+    separation.velocity_sigma.setConstant(t < 50 ? 5 : 0.05);
+    report.separation(separation);
+  }
+  const Figure figure = figure_of(report.page(), "velocity_separation");
+  EXPECT_NEAR(*figure.panels[0].y.max, 0.4, 1e-3);
+  EXPECT_NE(figure.panels[0].note.find("largest 15 m/s"), std::string::npos)
+      << figure.panels[0].note;
+  EXPECT_NE(figure.caption.find("are cut"), std::string::npos);
 }
 
 TEST(RunReport, StatisticsLeaveOutTheSettlingTime) {

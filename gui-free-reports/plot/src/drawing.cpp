@@ -6,7 +6,7 @@
 #include "foucault/core/error.h"
 #include "layout.h"
 #include "panel_painter.h"
-#include "png.h"
+#include "png_bytes.h"
 #include "renderer_part.h"
 #include "style.h"
 #include "svg_canvas.h"

@@ -7,9 +7,9 @@ namespace foucault {
 
 const char* stage_name(Stage stage) {
   static constexpr std::array<const char*, kStages> kNames{
-      "start",     "read",       "align", "mechanize",   "preintegrate",
-      "propagate", "update",     "solve", "marginalize", "covariance",
-      "smooth",    "statistics", "write", "draw",        "other"};
+      "start",      "survey", "read",  "align",       "mechanize",  "preintegrate",
+      "propagate",  "update", "solve", "marginalize", "covariance", "smooth",
+      "statistics", "write",  "draw",  "other"};
   return kNames[static_cast<std::size_t>(stage)];
 }
 

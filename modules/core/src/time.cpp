@@ -68,6 +68,16 @@ std::string utc_text(int64_t t_ns) {
                      below / 1'000'000);
 }
 
+std::string gps_second_text(int64_t t_ns) {
+  const int64_t ms = unix_to_gps(t_ns).tow_ns / 1'000'000;
+  return fmt::format("{}.{:03}", ms / 1000, ms % 1000);
+}
+
+std::string clock_text(int64_t t_ns) {
+  return fmt::format("{}, GPS week {} {} s", utc_text(t_ns), unix_to_gps(t_ns).week,
+                     gps_second_text(t_ns));
+}
+
 int gps_utc_offset_s(int64_t utc_ns) {
   const auto next = std::upper_bound(kLeapSeconds.begin(), kLeapSeconds.end(), utc_ns);
   return static_cast<int>(std::distance(kLeapSeconds.begin(), next));

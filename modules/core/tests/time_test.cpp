@@ -81,6 +81,9 @@ TEST(Time, RoundTripIsExact) {
 
 TEST(Time, TextOfAStamp) {
   EXPECT_EQ(utc_text(0), "1970-01-01T00:00:00.000Z");
+  EXPECT_EQ(clock_text(1'751'999'999'999'999'999),
+            "2025-07-08T18:39:59.999Z, GPS week 2374 240017.999 s")
+      << "both are cut off, so that they are one moment";
   EXPECT_EQ(utc_text(1'751'999'999'999'999'999), "2025-07-08T18:39:59.999Z");
   EXPECT_EQ(utc_text(-1), "1969-12-31T23:59:59.999Z");
   EXPECT_EQ(utc_text(-1'500'000'000), "1969-12-31T23:59:58.500Z");

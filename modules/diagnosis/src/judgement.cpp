@@ -202,15 +202,18 @@ void judge_density(const std::string& name, const std::string& key, double measu
   }
 }
 
+/// Densities that the whole recording has shown are not held against what shakes it at rest.
 void judge_noise(const LogFacts& facts, const imu::ImuNoise& configured, Judgement& out) {
   constexpr int64_t kEnough = 10;  // [s]; the median of ten differences is known to 40 %
   if (facts.rest.seconds < kEnough) {
     return out.ok("IMU noise", fmt::format("{} s of rest, too little to tell", facts.rest.seconds));
   }
-  judge_density("gyroscope noise", "imu.arw_deg_sqrt_h", facts.rest.gyro_noise_density,
-                configured.gyro_noise_density, kDegree / 60, "deg/sqrt(h)", out);
-  judge_density("accelerometer noise", "imu.vrw_m_s_sqrt_h", facts.rest.accel_noise_density,
-                configured.accel_noise_density, 1.0 / 60, "m/s/sqrt(h)", out);
+  if (!configured.learned) {
+    judge_density("gyroscope noise", "imu.arw_deg_sqrt_h", facts.rest.gyro_noise_density,
+                  configured.gyro_noise_density, kDegree / 60, "deg/sqrt(h)", out);
+    judge_density("accelerometer noise", "imu.vrw_m_s_sqrt_h", facts.rest.accel_noise_density,
+                  configured.accel_noise_density, 1.0 / 60, "m/s/sqrt(h)", out);
+  }
   constexpr double kEarthRate = 7.3e-5;
   const double expected = std::hypot(configured.gyro_bias_sigma, configured.gyro_turn_on_sigma);
   const std::string bias =

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "foucault/core/time.h"
 
 namespace foucault::diagnosis {
@@ -224,6 +226,20 @@ TEST_F(Complaint, Noise) {
   EXPECT_THAT(complaints(facts_),
               AllOf(HasSubstr("warning gyroscope noise"), HasSubstr("of a much worse IMU"),
                     HasSubstr("gyroscope bias: 2.06e+03 deg/h at rest")));
+}
+
+/// What a whole recording has shown stands; an engine at rest is no reason to tell another one.
+TEST_F(Complaint, NoneOfNoiseThatTheRecordingHasTold) {
+  facts_.rest.gyro_noise_density *= 10;
+  imu::ImuNoise learned = imu::imu_preset("ADIS16465");
+  const auto names_noise = [&] {
+    const std::vector<Finding> findings = judge(facts_, learned);
+    return std::any_of(findings.begin(), findings.end(),
+                       [](const Finding& f) { return f.subject == "gyroscope noise"; });
+  };
+  EXPECT_TRUE(names_noise());
+  learned.learned = true;
+  EXPECT_FALSE(names_noise());
 }
 
 }  // namespace

@@ -113,14 +113,27 @@ std::optional<Finding> on_stretches(const StretchConsistency& s, int64_t start_n
                              seconds_between(start_ns, s.worst_end_ns))};
 }
 
+/// What to change where the innovations of an aid are larger than their sigmas.
+std::string aid_remedy(const std::string& name) {
+  if (name == "zero_rate") {
+    return "; the gyroscopes' noise may be larger (imu.arw_deg_sqrt_h), or the vehicle shakes (do "
+           "without: aids.zero_velocity=off)";
+  }
+  for (const char* with_key : {"gnss_velocity", "zero_velocity", "nonholonomic", "wheel_speed"}) {
+    if (name != with_key) continue;
+    return fmt::format("; give larger ones (aids.{0}_sigma_m_s), or do without (aids.{0}=off)",
+                       name);
+  }
+  return "; give larger ones, or do without";
+}
+
 std::optional<Finding> on_aid(const std::string& name, const AidMetrics& aid) {
   if (aid.used < kFewestFixes) return std::nullopt;
   const double size = std::sqrt(aid.mean_nis() / aid.dimension);
   if (size <= kUsual.high) return std::nullopt;
   return Finding{size > kBelievable.high,
-                 fmt::format("innovations of {0} are {1:.1f} times as large as their sigmas; give "
-                             "larger ones (aids.{0}_sigma_m_s), or do without (aids.{0}=off)",
-                             name, size)};
+                 fmt::format("innovations of {} are {:.1f} times as large as their sigmas{}", name,
+                             size, aid_remedy(name))};
 }
 
 /// Faults are told by what most of the fixes agree on.

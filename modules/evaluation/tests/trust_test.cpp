@@ -17,6 +17,7 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::Not;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
@@ -56,6 +57,30 @@ class MadeUpRun {
   RunMetricsCollector collector_{state::Mounting()};
   double t_ = 0;
 };
+
+/// A remedy that names a key names one that exists.
+TEST(Trust, RemediesOfAidsAreKeysThatThereAre) {
+  const auto reasons = [](std::string_view name) {
+    RunMetricsCollector collector{state::Mounting()};
+    for (int i = 0; i < 50; ++i) {
+      state::ObservationResult result;
+      result.t_ns = nanoseconds(1.7e9 + i);
+      result.name = name;
+      result.dimension = 3;
+      result.normalized_square = 12;
+      result.used = true;
+      collector.observation(result);
+    }
+    std::string all;
+    for (const std::string& reason : collector.metrics().trust.reasons) all += reason + "\n";
+    return all;
+  };
+  EXPECT_THAT(reasons("zero_velocity"), HasSubstr("(aids.zero_velocity_sigma_m_s)"));
+  EXPECT_THAT(reasons("zero_rate"), HasSubstr("imu.arw_deg_sqrt_h"));
+  EXPECT_THAT(reasons("zero_rate"), Not(HasSubstr("aids.zero_rate")));
+  EXPECT_THAT(reasons("barometer"), HasSubstr("innovations of barometer are 2.0 times"));
+  EXPECT_THAT(reasons("barometer"), Not(HasSubstr("aids.")));
+}
 
 TEST(Trust, InnovationsOfTheirSizeAreBelieved) {
   const Trust trust = MadeUpRun().fixes(400, 1).trust();

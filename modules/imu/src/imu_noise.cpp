@@ -148,6 +148,7 @@ ImuNoise ImuOptions::noise() const {
   override_with(bias_tau_s, 1, noise.bias_tau);
   override_with(gyro_turn_on_deg_h, kDegPerHour, noise.gyro_turn_on_sigma);
   override_with(accel_turn_on_mgal, kMilliGal, noise.accel_turn_on_sigma);
+  noise.learned = learned;
   return noise;
 }
 
@@ -176,6 +177,7 @@ ImuOptions ImuOptions::with(const ImuNoise& noise) const {
   out.bias_tau_s = noise.bias_tau;
   out.gyro_turn_on_deg_h = noise.gyro_turn_on_sigma / kDegPerHour;
   out.accel_turn_on_mgal = noise.accel_turn_on_sigma / kMilliGal;
+  out.learned = noise.learned;
   return out;
 }
 

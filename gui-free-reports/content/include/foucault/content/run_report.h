@@ -57,6 +57,9 @@ class RunReport : public state::Sink {
   /// `epoch` is the one the error belongs to; its covariance gives the bounds.
   void reference_error(const state::Epoch& epoch, const state::ReferenceError& error);
 
+  /// Of a smoother: an epoch of its forward run, in which what is calibrated becomes known.
+  void forward_epoch(const state::Epoch& epoch);
+
   /// Of a smoother: what it made of its forward run.
   void separation(const state::Separation& separation);
 

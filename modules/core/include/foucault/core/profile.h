@@ -26,6 +26,7 @@ namespace foucault {
 
 enum class Stage {
   start,         ///< the process before the run: loading of libraries
+  survey,        ///< the log gone through before: what is wrong, clocks, noise
   read,          ///< log to measurements
   align,         ///< initial state
   mechanize,     ///< every IMU sample of a filter

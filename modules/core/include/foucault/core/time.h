@@ -39,6 +39,12 @@ struct GpsTime {
   int64_t tow_ns = 0;  ///< [ns], 0 <= tow_ns < 604800e9
 };
 
+/// GPS second of week with three decimals, cut off as those of utc_text().
+std::string gps_second_text(int64_t t_ns);
+
+/// Both clocks that readers use: `2024-05-01T12:34:56.789Z, GPS week 2312 304514.789 s`.
+std::string clock_text(int64_t t_ns);
+
 /// GPS minus UTC [s] at a UTC instant (18 since 2017-01-01; 0 before 1981-07-01).
 int gps_utc_offset_s(int64_t utc_ns);
 

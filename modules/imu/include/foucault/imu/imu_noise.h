@@ -17,6 +17,8 @@ struct ImuNoise {
   double bias_tau = 3600;          ///< correlation time [s]
   double gyro_turn_on_sigma = 0;   ///< [rad/s]
   double accel_turn_on_sigma = 0;  ///< [m/s^2]
+  /// White noise and biases are those that a whole recording shows, not what was told.
+  bool learned = false;
 
   /// Power of the driving noise, q = 2 sigma^2 / tau [(rad/s)^2/s], [(m/s^2)^2/s].
   double gyro_bias_power() const { return 2 * gyro_bias_sigma * gyro_bias_sigma / bias_tau; }
@@ -48,6 +50,7 @@ class ImuOptions : public Configurable {
   std::string samples = kAsRecorded;
   std::optional<double> arw_deg_sqrt_h, vrw_m_s_sqrt_h, gyro_bias_deg_h, accel_bias_mgal,
       bias_tau_s, gyro_turn_on_deg_h, accel_turn_on_mgal;
+  bool learned = false;  ///< as ImuNoise; no key
 
   void fields(ConfigFields& f) override;
 

@@ -1,4 +1,4 @@
-#include "png.h"
+#include "png_bytes.h"
 
 #include <gtest/gtest.h>
 
@@ -24,14 +24,14 @@ cv::Mat shaded(int shades) {
   return image;
 }
 
-TEST(Png, FewColoursArePutInAPaletteAndComeBackAsTheyAre) {
+TEST(PngBytes, FewColoursArePutInAPaletteAndComeBackAsTheyAre) {
   const cv::Mat image = shaded(200);
   const std::vector<unsigned char> png = to_png(image);
   EXPECT_EQ(png[kKindOfColour], 3);
   EXPECT_EQ(cv::norm(read_back(png), image, cv::NORM_INF), 0);
 }
 
-TEST(Png, ColoursThatAreHardlyDifferentShareAPlace) {
+TEST(PngBytes, ColoursThatAreHardlyDifferentShareAPlace) {
   const cv::Mat image = shaded(600);
   const std::vector<unsigned char> png = to_png(image);
   EXPECT_EQ(png[kKindOfColour], 3);
@@ -41,7 +41,7 @@ TEST(Png, ColoursThatAreHardlyDifferentShareAPlace) {
   EXPECT_EQ(to_png(image), png);
 }
 
-TEST(Png, ManyColoursStayAsTheyAre) {
+TEST(PngBytes, ManyColoursStayAsTheyAre) {
   cv::Mat image(64, 64, CV_8UC3);
   cv::RNG random(7);
   random.fill(image, cv::RNG::UNIFORM, 0, 256);

@@ -1,13 +1,12 @@
-#include "png.h"
+#include "png_bytes.h"
 
-#include <zlib.h>
+#include <png.h>
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
 #include <cstdlib>
 #include <stdexcept>
-#include <string_view>
+#include <string>
 #include <unordered_map>
 
 namespace foucault::plot {
@@ -15,7 +14,6 @@ namespace {
 
 using Bytes = std::vector<unsigned char>;
 
-constexpr int kLevel = 2;              // of zlib: higher ones take longer than they are worth
 constexpr size_t kPalette = 256;       // colours
 constexpr int kUnseen = 20;            // [levels of 255]: so far may a colour of few pixels be off
 constexpr size_t kFrequent = 192;      // entries of the palette for what there is most of
@@ -101,89 +99,55 @@ Palette palette_of(const std::vector<Count>& colours) {
   return palette;
 }
 
-/// Rows as PNG has them, each behind the number of its filter: none.
-Bytes indexed_rows(const cv::Mat& image, const Palette& palette) {
-  Bytes rows;
-  rows.reserve(size_t(image.rows) * size_t(image.cols + 1));
+/// Of each pixel, the place in the palette.
+Bytes places_of(const cv::Mat& image, const Palette& palette) {
+  Bytes places;
+  places.reserve(image.total());
   uint32_t last = kNoColour;
   uchar place = 0;
   for (int y = 0; y < image.rows; ++y) {
-    rows.push_back(0);
     const uchar* pixel = image.ptr(y);
     for (int x = 0; x < image.cols; ++x, pixel += 3) {
       const uint32_t colour = colour_at(pixel);
       if (colour != last) place = palette.places.at(last = colour);
-      rows.push_back(place);
+      places.push_back(place);
     }
   }
-  return rows;
+  return places;
 }
 
-Bytes coloured_rows(const cv::Mat& image) {
-  Bytes rows;
-  rows.reserve(size_t(image.rows) * size_t(3 * image.cols + 1));
-  for (int y = 0; y < image.rows; ++y) {
-    rows.push_back(0);
-    const uchar* pixel = image.ptr(y);
-    for (int x = 0; x < image.cols; ++x, pixel += 3) {
-      rows.insert(rows.end(), {pixel[2], pixel[1], pixel[0]});
-    }
+/// As `pixels` are in memory, rows of `stride` bytes; `entries`: of its palette, if it has one.
+Bytes written(png_image& png, const void* pixels, size_t stride, const uchar* entries) {
+  png.version = PNG_IMAGE_VERSION;
+  png.flags = PNG_IMAGE_FLAG_FAST;  // no filters and little search: figures are flat
+  Bytes file(PNG_IMAGE_PNG_SIZE_MAX(png));
+  png_alloc_size_t size = file.size();
+  if (png_image_write_to_memory(&png, file.data(), &size, 0, pixels, int(stride), entries) == 0) {
+    throw std::runtime_error(std::string("an image cannot be written: ") + png.message);
   }
-  return rows;
-}
-
-Bytes deflated(const Bytes& plain) {
-  uLongf size = compressBound(uLong(plain.size()));
-  Bytes result(size);
-  if (compress2(result.data(), &size, plain.data(), uLong(plain.size()), kLevel) != Z_OK) {
-    throw std::runtime_error("an image cannot be compressed");
-  }
-  result.resize(size);
-  return result;
-}
-
-void append(uint32_t number, Bytes& file) {
-  for (const int shift : {24, 16, 8, 0}) file.push_back(uchar(number >> shift));
-}
-
-void append_chunk(std::string_view name, const Bytes& content, Bytes& file) {
-  append(uint32_t(content.size()), file);
-  const size_t begin = file.size();
-  file.insert(file.end(), name.begin(), name.end());
-  file.insert(file.end(), content.begin(), content.end());
-  append(uint32_t(crc32(0, file.data() + begin, uInt(file.size() - begin))), file);
-}
-
-Bytes header(const cv::Mat& image, bool indexed) {
-  Bytes content;
-  append(uint32_t(image.cols), content);
-  append(uint32_t(image.rows), content);
-  content.insert(content.end(), {8, uchar(indexed ? 3 : 2), 0, 0, 0});  // bits, kind of colour
-  return content;
-}
-
-Bytes colour_table(const Palette& palette) {
-  Bytes content;
-  for (const uint32_t colour : palette.entries) {
-    content.insert(content.end(), {uchar(colour >> 16), uchar(colour >> 8), uchar(colour)});
-  }
-  return content;
+  file.resize(size);
+  return file;
 }
 
 }  // namespace
 
 Bytes to_png(const cv::Mat& image) {
-  constexpr std::array<uchar, 8> kSignature{0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
-  Bytes file(kSignature.begin(), kSignature.end());
   const std::vector<Count> colours = colours_of(image);
   const Palette palette = colours.size() <= kMostColours ? palette_of(colours) : Palette{};
-  const bool indexed = !palette.entries.empty() && palette.off <= kUnseen;
-  append_chunk("IHDR", header(image, indexed), file);
-  if (indexed) append_chunk("PLTE", colour_table(palette), file);
-  append_chunk("IDAT", deflated(indexed ? indexed_rows(image, palette) : coloured_rows(image)),
-               file);
-  append_chunk("IEND", {}, file);
-  return file;
+  png_image png{};
+  png.width = png_uint_32(image.cols);
+  png.height = png_uint_32(image.rows);
+  png.format = PNG_FORMAT_BGR;
+  if (palette.entries.empty() || palette.off > kUnseen) {
+    return written(png, image.data, image.step, nullptr);
+  }
+  png.format = PNG_FORMAT_BGR_COLORMAP;
+  png.colormap_entries = png_uint_32(palette.entries.size());
+  Bytes entries;
+  for (const uint32_t colour : palette.entries) {
+    entries.insert(entries.end(), {uchar(colour), uchar(colour >> 8), uchar(colour >> 16)});
+  }
+  return written(png, places_of(image, palette).data(), size_t(image.cols), entries.data());
 }
 
 }  // namespace foucault::plot
