@@ -94,7 +94,7 @@ TEST_F(Report, ShowsAidsAndCalibrationWhereThereAreAny) {
   const std::string untold = section("aided", "Calibration")["paragraphs"][0];
   EXPECT_THAT(untold,
               testing::AllOf(HasSubstr("Antenna, down"), Not(HasSubstr("Mounting, heading")),
-                             HasSubstr("the recording does not tell it")));
+                             HasSubstr("tells hardly anything of it")));
   const Table arms(folder_ / "aided/report/calibration_arms.csv");
   EXPECT_NEAR(arms.column("antenna_down_m").back(),
               metrics["calibration"]["lever_arm"]["value"][2].get<double>(), 1e-5);

@@ -856,7 +856,14 @@ Figure outage_map(const OutageMap& map, const MethodOrder& order) {
   panel.x.least_span = panel.y.least_span = 1;
   panel.equal_aspect = true;
   panel.scale_bar = true;
-  panel.series.push_back(path_series(map.truth, "truth", Ink::light_gray, 2.2));
+  const auto places = [](const GroundPath& path) {
+    return std::count_if(path.north_m.begin(), path.north_m.end(),
+                         [](double v) { return std::isfinite(v); });
+  };
+  // Withheld fixes are a truth of the outages alone.
+  if (places(map.truth) > places(map.truth_in_outages)) {
+    panel.series.push_back(path_series(map.truth, "truth", Ink::light_gray, 2.2));
+  }
   panel.series.push_back(path_series(map.truth_in_outages, "truth in outages", Ink::gray, 4));
   for (const OutageMap::Estimate& estimate : map.estimates) {
     const Series look = method_series(estimate.method, order);

@@ -243,6 +243,13 @@ TEST(EvaluationFigures, AMethodLooksTheSameWhateverStandsBesideIt) {
   EXPECT_EQ(beside.dash, alone.dash);
 }
 
+TEST(EvaluationFigures, TruthOfTheOutagesAloneIsNamedOnce) {
+  OutageMap map = made_up_map();
+  EXPECT_EQ(outage_map(map, kMethods).panels[0].series[0].label, "truth");
+  map.truth = map.truth_in_outages;
+  EXPECT_EQ(outage_map(map, kMethods).panels[0].series[0].label, "truth in outages");
+}
+
 TEST(EvaluationFigures, MaximaOfMethodsThatDriftAlikeAreAllSeen) {
   const std::vector<Series> series =
       maximum_drifts(made_up_case("X", 1e-3), kMethods).panels.at(0).series;
