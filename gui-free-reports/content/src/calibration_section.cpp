@@ -241,8 +241,7 @@ Table calibration_table(const std::vector<ShownRow>& rows) {
   }
   table.note =
       "Share: of the prior's sigma that is left. Lever arms are from the IMU, along the vehicle's "
-      "axes as they were told; the mounting is "
-      "what those axes have to be turned by.";
+      "axes; the mounting is what those have to be turned by that were told.";
   return table;
 }
 

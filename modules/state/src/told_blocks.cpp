@@ -1,34 +1,53 @@
 #include "foucault/state/told_blocks.h"
 
+#include "foucault/core/so3.h"
+
 namespace foucault::state {
 namespace {
 
-void turn_arm(const SlowBlock& arm, const Eigen::Matrix3d& R, Epoch& epoch) {
-  const Eigen::Index row = state_size(arm.index);
-  StateMatrix& P = epoch.covariance;
-  epoch.slow.segment<3>(arm.index) = (R * epoch.slow.segment<3>(arm.index)).eval();
-  P.middleRows<3>(row) = (R * P.middleRows<3>(row)).eval();
-  P.middleCols<3>(row) = (P.middleCols<3>(row) * R.transpose()).eval();
+/// l_v = M R_v_b l_b, M = exp(0, pitch, heading) of the block `mounting` where it is estimated.
+void turn_arm(const SlowBlock& arm, const Told& told, Epoch& epoch) {
+  const SlowBlock* mounting = told.layout.find(block::mounting);
+  Eigen::Vector3d turn = Eigen::Vector3d::Zero();
+  if (mounting) turn.tail<2>() = epoch.slow.segment<2>(mounting->index);
+  const Eigen::Matrix3d M = so3::exp(turn).toRotationMatrix();
+  const Eigen::Vector3d told_v = told.q_v_b * Eigen::Vector3d(epoch.slow.segment<3>(arm.index));
+  epoch.slow.segment<3>(arm.index) = M * told_v;
+
+  StateMatrix J = StateMatrix::Identity(told.layout.size(), told.layout.size());
+  part(J, arm, arm) = M * told.q_v_b.toRotationMatrix();
+  if (mounting)
+    part(J, arm, *mounting) = -(M * so3::skew(told_v) * so3::right_jacobian(turn)).rightCols<2>();
+  epoch.covariance = (J * epoch.covariance * J.transpose()).eval();
 }
 
 }  // namespace
 
 Epoch as_users_know(const Epoch& epoch, const Told& told) {
   Epoch whole = epoch;
-  const Eigen::Matrix3d R_v_b = told.q_v_b.toRotationMatrix();
   if (const SlowBlock* offset = told.layout.find(block::time_offset)) {
     whole.slow[offset->index] += told.time_offset_s;
   }
   if (const SlowBlock* arm = told.layout.find(block::lever_arm)) {
     whole.slow.segment<3>(arm->index) += told.lever_arm_b;
-    turn_arm(*arm, R_v_b, whole);
+    turn_arm(*arm, told, whole);
   }
-  if (const SlowBlock* arm = told.layout.find(block::wheel_lever_arm)) turn_arm(*arm, R_v_b, whole);
+  if (const SlowBlock* arm = told.layout.find(block::wheel_lever_arm)) turn_arm(*arm, told, whole);
   return whole;
 }
 
 Epoch prior_as_users_know(const Told& told) {
-  return as_users_know(with_slow_blocks({}, told.layout), told);
+  Epoch prior = with_slow_blocks({}, told.layout);
+  const SlowMatrix covariance = slow_part(prior.covariance);
+  if (const SlowBlock* mounting = told.layout.find(block::mounting)) {
+    part(prior.covariance, *mounting, *mounting).setZero();
+  }
+  prior = as_users_know(prior, told);
+  if (const SlowBlock* mounting = told.layout.find(block::mounting)) {
+    part(prior.covariance, *mounting, *mounting) =
+        covariance.block<2, 2>(mounting->index, mounting->index);
+  }
+  return prior;
 }
 
 }  // namespace foucault::state

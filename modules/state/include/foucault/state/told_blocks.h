@@ -15,11 +15,13 @@ struct Told {
   Eigen::Quaterniond q_v_b = Eigen::Quaterniond::Identity();  ///< the mounting as told
 };
 
-/// The epoch with slow blocks as users know them: the whole time offset; lever arms along the told
-/// forward, right, down, that to the antenna as a whole. Its covariance follows.
+/// The epoch with slow blocks as users know them: the whole time offset; lever arms along the
+/// vehicle's forward, right, down, as its mounting was found, that to the antenna as a whole. Its
+/// covariance follows.
 Epoch as_users_know(const Epoch& epoch, const Told& told);
 
-/// The same of what was known before anything was measured.
+/// The same of what was told before anything was measured: arms with the sigmas they were told by,
+/// though what the mounting is was not known.
 Epoch prior_as_users_know(const Told& told);
 
 }  // namespace foucault::state
