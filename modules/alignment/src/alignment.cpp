@@ -533,7 +533,8 @@ void Aligner::Impl::conclude(double largest_sigma) {
   const std::vector<Refined> all = refined_candidates(belief_->level);
   if (all.empty()) {
     failure_ = "no state was found from which a filter keeps to the fixes";
-    if (++failures_ >= kMostFailures) leave_out_until(belief_->best.t_ns);
+    if (++failures_ >= kMostFailures)
+      leave_out_until(begin_ns_ + (belief_->best.t_ns - begin_ns_) / 2);
     return;
   }
   const Refined& best = all.front();
