@@ -50,16 +50,21 @@ double gain_of(const std::vector<Prediction>& one, const std::vector<Prediction>
   return most;
 }
 
+/// Coarse: a quarter of the starts.
+enum class Detail { coarse, fine };
+
 /// The function that is climbed, over the logarithms of the factors of what was told.
 class Landscape {
  public:
   Landscape(const std::vector<RecordedWay>& ways, const NoiseModel& told,
-            const LearnOptions& options, int starts)
+            const LearnOptions& options, Detail detail = Detail::fine)
       : ways_(ways),
         options_(options),
+        detail_(detail),
         told_(told),
         prior_(1 / std::pow(std::log(options.told_within), 2)) {
     const double length = length_of(ways);
+    const int starts = options.starts / (detail == Detail::coarse ? 4 : 1);
     horizons_ = {options.horizons_s, every_s(ways, starts)};
     for (const Prediction& p : predict(origin())) weights_[p.horizon_s] += 1;
     for (auto& [horizon, weight] : weights_) weight = std::min(1.0, length / kIndependent / weight);
@@ -68,6 +73,7 @@ class Landscape {
   Eigen::Index size() const { return static_cast<Eigen::Index>(options_.axes.size()); }
   Eigen::VectorXd origin() const { return Eigen::VectorXd::Zero(size()); }
   int passes() const { return passes_; }
+  Detail detail() const { return detail_; }
   double every() const { return horizons_.every_s; }  ///< [s]
 
   NoiseModel at(const Eigen::VectorXd& x) const {
@@ -147,6 +153,7 @@ class Landscape {
 
   const std::vector<RecordedWay>& ways_;
   const LearnOptions& options_;
+  Detail detail_;
   NoiseModel told_;
   double prior_;
   Horizons horizons_;
@@ -167,15 +174,49 @@ Place place_at(Landscape& landscape, const Eigen::VectorXd& x) {
   return place;
 }
 
+/// What the information lacks of the curvature, where the errors are not what the model takes them
+/// for: from how the gradient changed along steps (Dennis, Gay, Welsch, ACM TOMS 7 (1981)).
+class Curvature {
+ public:
+  explicit Curvature(Eigen::Index size) : beyond_(Eigen::MatrixXd::Zero(size, size)) {}
+
+  /// Of the slope, that is `step` from the one seen before.
+  void see(const Landscape::Slope& slope, const Eigen::VectorXd& step) {
+    if (gradient_.size() > 0) learn(slope, step);
+    gradient_ = slope.gradient;
+  }
+
+  /// With the diagonal of the information times `damping` added. The information alone where that
+  /// is no top.
+  Eigen::VectorXd step(const Landscape::Slope& slope, double damping) const {
+    Eigen::MatrixXd added = Eigen::MatrixXd::Zero(beyond_.rows(), beyond_.cols());
+    added.diagonal() = damping * slope.information.diagonal();
+    const Eigen::LLT<Eigen::MatrixXd> llt(slope.information + beyond_ + added);
+    if (llt.info() == Eigen::Success) return llt.solve(slope.gradient);
+    return (slope.information + added).ldlt().solve(slope.gradient);
+  }
+
+ private:
+  void learn(const Landscape::Slope& slope, const Eigen::VectorXd& step) {
+    const Eigen::VectorXd change = gradient_ - slope.gradient;
+    const double along = change.dot(step);
+    if (along <= 0) return;
+    const Eigen::VectorXd rest = change - (slope.information + beyond_) * step;
+    beyond_ += (rest * change.transpose() + change * rest.transpose()) / along -
+               rest.dot(step) * change * change.transpose() / (along * along);
+  }
+
+  Eigen::MatrixXd beyond_;
+  Eigen::VectorXd gradient_;
+};
+
 /// The first higher place along steps that are damped more and more; none if there is none.
 std::optional<Place> higher(Landscape& landscape, const Place& from, const Landscape::Slope& slope,
-                            double& damping) {
+                            const Curvature& curvature, double& damping) {
   constexpr int kAttempts = 6;
   constexpr double kLongest = 1.5;  // a factor of 4.5
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
-    Eigen::MatrixXd damped = slope.information;
-    damped.diagonal() *= 1 + damping;
-    Eigen::VectorXd step = damped.ldlt().solve(slope.gradient);
+    Eigen::VectorXd step = curvature.step(slope, damping);
     step *= std::min(1.0, kLongest / step.cwiseAbs().maxCoeff());
     Place next = place_at(landscape, from.x + step);
     if (next.height > from.height) {
@@ -189,16 +230,21 @@ std::optional<Place> higher(Landscape& landscape, const Place& from, const Lands
 
 Place climbed(Landscape& landscape, const Eigen::VectorXd& start) {
   constexpr int kMostRounds = 20;
-  constexpr double kLittle = 0.02;  // of a logarithm of a likelihood
+  // Of a logarithm of a likelihood; of the coarse one a fine one finds the rest.
+  const double little = landscape.detail() == Detail::fine ? 0.02 : 0.2;
   Place place = place_at(landscape, start);
+  Curvature curvature(start.size());
+  Eigen::VectorXd step = Eigen::VectorXd::Zero(start.size());
   double damping = 0;
   for (int round = 0; round < kMostRounds; ++round) {
     const Landscape::Slope slope = landscape.slope(place.predictions, place.x);
+    if (landscape.detail() == Detail::fine) curvature.see(slope, step);
     place.information = slope.information;
-    std::optional<Place> next = higher(landscape, place, slope, damping);
+    std::optional<Place> next = higher(landscape, place, slope, curvature, damping);
     if (!next) break;
+    step = next->x - place.x;
     next->information = place.information;
-    const bool arrived = next->height - place.height < kLittle;
+    const bool arrived = next->height - place.height < little;
     place = std::move(*next);
     if (arrived) break;
   }
@@ -292,7 +338,7 @@ void learn_white_alone(const std::vector<RecordedWay>& ways, const LearnOptions&
   alone.axes = {white};
   out.noise.fix_white = std::hypot(out.noise.fix_white, out.noise.fix_coloured);
   out.noise.fix_coloured = 0;
-  Landscape landscape(ways, out.noise, alone, alone.starts);
+  Landscape landscape(ways, out.noise, alone);
   const Learned found =
       found_at(landscape, climbed(landscape, landscape.origin()), out.noise, alone);
   out.noise = found.noise;
@@ -302,23 +348,23 @@ void learn_white_alone(const std::vector<RecordedWay>& ways, const LearnOptions&
   axis->told = told;
 }
 
-/// From the place without them; none if chance would explain as much.
+/// From the coarse place without them; none if chance would explain as much.
 std::optional<Learned> among_lasting_errors(const std::vector<RecordedWay>& ways, NoiseModel told,
                                             const LearnOptions& options, const Place& without) {
   constexpr double kChance = 1e-4;
   told.fix_coloured = 0.5;  // of what was told
   LearnOptions more = options;
   more.axes.insert(more.axes.end(), {noise_axis::fix_coloured, noise_axis::fix_tau});
-  Landscape coarse(ways, told, more, options.starts / 4);
-  Landscape landscape(ways, told, more, options.starts);
-  Eigen::VectorXd origin = landscape.origin();
+  Landscape coarse(ways, told, more, Detail::coarse);
+  Eigen::VectorXd origin = coarse.origin();
   origin.head(without.x.size()) = without.x;
-  const Place with = climbed(landscape, highest(coarse, origin, more).x);
+  const Place with = highest(coarse, origin, more);
   // Twice the gain is a chi-square of two degrees of freedom, at the next fix or any horizon.
-  const double gain = gain_of(without.predictions, with.predictions, landscape.every());
+  const double gain = gain_of(without.predictions, with.predictions, coarse.every());
   const double tries = 1 + static_cast<double>(options.horizons_s.size());
   if (tries * std::exp(-gain) > kChance) return std::nullopt;
-  Learned out = found_at(landscape, with, told, options);
+  Landscape landscape(ways, told, more);
+  Learned out = found_at(landscape, climbed(landscape, with.x), told, options);
   out.passes += coarse.passes();
   out.lasting = {out.noise.fix_coloured, out.noise.fix_tau_s};
   learn_white_alone(ways, options, out);
@@ -351,13 +397,14 @@ NoiseAxes axes_of(const std::vector<RecordedWay>& ways) {
 Learned learn(const std::vector<RecordedWay>& ways, const NoiseModel& told,
               const LearnOptions& options) {
   if (options.axes.empty()) return {told, {}, {}, 0, 0, {}, {}};
-  Landscape coarse(ways, told, options, options.starts / 4);
-  Landscape landscape(ways, told, options, options.starts);
+  Landscape coarse(ways, told, options, Detail::coarse);
+  Landscape landscape(ways, told, options);
   const Place before = place_at(landscape, landscape.origin());
-  const Place best = climbed(landscape, highest(coarse, coarse.origin(), options).x);
+  const Place near = highest(coarse, coarse.origin(), options);
   std::optional<Learned> among;
-  if (options.lasting) among = among_lasting_errors(ways, told, options, best);
-  Learned out = among ? std::move(*among) : found_at(landscape, best, told, options);
+  if (options.lasting) among = among_lasting_errors(ways, told, options, near);
+  Learned out =
+      among ? std::move(*among) : found_at(landscape, climbed(landscape, near.x), told, options);
   const std::vector<Prediction> after =
       all_predictions(ways, out.noise, {options.horizons_s, landscape.every()});
   out.gain = gain_of(before.predictions, after, landscape.every());
@@ -379,7 +426,7 @@ std::size_t most_likely(const std::vector<RecordedWay>& ways, const std::vector<
   std::size_t best = 0;
   double highest = -std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < noises.size(); ++i) {
-    Landscape landscape(ways, noises[i], options, options.starts);
+    Landscape landscape(ways, noises[i], options);
     const double height = place_at(landscape, landscape.origin()).height;
     if (height <= highest) continue;
     highest = height;
