@@ -64,15 +64,28 @@ std::optional<Watcher> look_through(const std::string& log, const Settings& sett
   return watcher;
 }
 
-/// What is left of the offset at the end of the log is more than small, and is known.
-std::optional<double> rest_of_offset(const Watcher& watcher, const state::Layout& layout) {
-  constexpr double kSmall = 0.002;  // [s]; at 3 m/s^2 the second order is 6 micrometres
+/// Time offset at the end of a pass, and what may be taken for known of it before the next one.
+struct OffsetLeft {
+  double value = 0, sigma = 0;  ///< [s]
+  /// What is left is of the second order; moved by it, fixes would say the same.
+  bool small() const {
+    constexpr double kSmall = 0.01;  // [s]; at 3 m/s^2 its second order is 0.15 mm
+    return std::abs(value) < std::max(kSmall, sigma);
+  }
+  /// So wide that the same fixes count for a ninth at most when they are used again, or that they
+  /// are in the linear range from the start: at 3 m/s^2 its second order is 0.6 mm. With the 0.3 s
+  /// of users it is 14 cm, for which the first metres of a trip took an offset of many sigmas.
+  double next_sigma(double told) const {
+    constexpr double kReuse = 3, kLinear = 0.02;  // [s]
+    return std::min(told, std::max(kReuse * sigma, kLinear));
+  }
+};
+
+std::optional<OffsetLeft> offset_left(const Watcher& watcher, const state::Layout& layout) {
   const state::SlowBlock* offset = layout.find(state::block::time_offset);
   if (!offset) return std::nullopt;
-  const double value = watcher.last->slow[offset->index];
-  const double sigma = std::sqrt(state::part(watcher.last->covariance, *offset, *offset)(0, 0));
-  if (std::abs(value) < std::max(kSmall, sigma)) return std::nullopt;
-  return value;
+  return OffsetLeft{watcher.last->slow[offset->index],
+                    std::sqrt(state::part(watcher.last->covariance, *offset, *offset)(0, 0))};
 }
 
 bool uses(const Watcher& watcher, const char* aid) {
@@ -206,7 +219,9 @@ Survey Surveyor::survey(const std::string& log, Settings settings) {
   if (untold) settings.imu = coarse(settings.imu);
   int questions = untold ? 2 : settings.calibrate.noise == "off" ? 0 : 1;
   Survey found;
+  const double told_sigma_s = settings.calibrate.time_offset_sigma_s;
   found.time_offset_s = settings.calibrate.time_offset_s;
+  found.time_offset_sigma_s = told_sigma_s;
   settings.calibrate = settings.calibrate.resolved({true, true});
   for (int pass = 0; pass < kMostPasses; ++pass) {
     const std::optional<Watcher> watcher = look_through(log, settings, questions > 0, console_);
@@ -216,8 +231,9 @@ Survey Surveyor::survey(const std::string& log, Settings settings) {
     found.told = evaluation::calibrated_blocks(state::prior_as_users_know(watcher->told),
                                                watcher->told.layout);
     found.carried = {uses(*watcher, "nonholonomic"), uses(*watcher, "wheel_speed")};
-    const std::optional<double> rest = rest_of_offset(*watcher, settings.calibrate.layout());
-    const bool moves = rest && std::abs(found.time_offset_s + *rest) < kMost;
+    const std::optional<OffsetLeft> left = offset_left(*watcher, settings.calibrate.layout());
+    const bool known = left && std::abs(found.time_offset_s + left->value) < kMost;
+    const bool moves = known && !left->small();
     const bool learns = questions > 0 && !watcher->way.empty() && (pass > 0 || !moves);
     if (learns) {
       const calibration::RecordedWay way = calibration::folded(watcher->way, watcher->last->slow);
@@ -231,8 +247,12 @@ Survey Surveyor::survey(const std::string& log, Settings settings) {
         found.noise = std::move(noise);
       }
     }
+    if (known) {
+      found.time_offset_sigma_s = left->next_sigma(told_sigma_s);
+      settings.calibrate.time_offset_sigma_s = found.time_offset_sigma_s;
+    }
     if (moves) {
-      found.time_offset_s += *rest;
+      found.time_offset_s += left->value;
       settings.calibrate.time_offset_s = settings.rawlog.fix_delay_s = found.time_offset_s;
     }
     if (!moves && !learns) break;
@@ -324,6 +344,7 @@ Settings Surveyor::complete(const std::string& log, const Settings& settings) {
   if (found->second.noise) found->second.noise->apply_to(completed);
   if (settings.calibrate.time_offset != "off") {
     completed.calibrate.time_offset_s = completed.rawlog.fix_delay_s = found->second.time_offset_s;
+    completed.calibrate.time_offset_sigma_s = found->second.time_offset_sigma_s;
   }
   if (is_untold(completed)) {
     completed.imu = coarse(completed.imu);

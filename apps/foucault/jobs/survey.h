@@ -25,7 +25,8 @@ struct LearnedNoise {
 
 /// What a filter finds in a log before it is processed.
 struct Survey {
-  double time_offset_s = 0;  ///< calibrate.time_offset_s; what is left is small
+  double time_offset_s = 0;        ///< calibrate.time_offset_s; what is left is small
+  double time_offset_sigma_s = 0;  ///< calibrate.time_offset_sigma_s, of what is left
   state::CalibrateOptions::Carried carried;
   std::optional<LearnedNoise> noise;  ///< as told where the recording does not contradict it
   /// At the end of the log, as users know them: value and sigma, and that of what was told.
