@@ -44,9 +44,9 @@ TEST(CalibrationSection, EstimatesAreWholeAndInUnitsOfUsers) {
   EXPECT_EQ(arms.panels[2].title, "down");
   EXPECT_EQ(arms.panels[2].y.label, "Antenna");
   EXPECT_EQ(arms.panels[2].y.unit, "m");
-  const Eigen::Vector3d turn(0, 0.01, 0.01);
   const Eigen::Vector3d arm_v =
-      Eigen::AngleAxisd(turn.norm(), turn.normalized()) * Eigen::Vector3d(0.11, 0.21, -0.79);
+      Eigen::AngleAxisd(0.01, Eigen::Vector3d::UnitZ()) *
+      (Eigen::AngleAxisd(0.01, Eigen::Vector3d::UnitY()) * Eigen::Vector3d(0.11, 0.21, -0.79));
   EXPECT_NEAR(series_of(arms.panels[2], "estimate").y.back(), arm_v.z(), 1e-9)
       << "along the vehicle as its mounting was found";
   const Figure& vehicle = figure_of(page, "calibration_vehicle");

@@ -1,6 +1,7 @@
 #include "vehicle_point.h"
 
 #include "foucault/core/so3.h"
+#include "foucault/state/mounting_turn.h"
 
 namespace foucault::measurement {
 
@@ -12,9 +13,8 @@ VehiclePoint vehicle_point(const BodyStretch& stretch, const Eigen::Matrix3d& C_
   const Eigen::Vector3d omega_b = stretch.rate_b - x.bias.gyro;
   Eigen::Vector3d l_b = Eigen::Vector3d::Zero();
   if (arm) l_b = x.slow.segment<3>(arm->index);
-  Eigen::Vector3d turn = Eigen::Vector3d::Zero();
-  if (mounting) turn.tail<2>() = x.slow.segment<2>(mounting->index);
-  const Eigen::Matrix3d M = so3::exp(turn).toRotationMatrix();
+  const state::MountingTurn turn(x.slow, mounting);
+  const Eigen::Matrix3d& M = turn.matrix();
   const Eigen::Vector3d told_v = C_v_b * (u.value_b + omega_b.cross(l_b));
   const Eigen::Matrix3d by_b = M * C_v_b;
 
@@ -24,19 +24,14 @@ VehiclePoint vehicle_point(const BodyStretch& stretch, const Eigen::Matrix3d& C_
   point.H.leftCols(u.J.cols()) = by_b * u.J;
   state::columns_of(point.H, state::block::gyro_bias) += by_b * so3::skew(l_b);
   if (arm) state::columns_of(point.H, *arm) = by_b * so3::skew(omega_b);
-  if (mounting) {
-    state::columns_of(point.H, *mounting) =
-        -(M * so3::skew(told_v) * so3::right_jacobian(turn)).rightCols<2>();
-  }
+  if (mounting) state::columns_of(point.H, *mounting) = turn.gradient(told_v);
   const Eigen::Vector3d told_rate_v = C_v_b * omega_b;
   point.turn_rate = (M * told_rate_v).z();
   point.turn_rate_gradient.setZero(layout.size());
   state::part(point.turn_rate_gradient, state::block::gyro_bias) = -by_b.row(2).transpose();
   if (mounting) {
     state::part(point.turn_rate_gradient, *mounting) =
-        -(M * so3::skew(told_rate_v) * so3::right_jacobian(turn))
-             .bottomRightCorner<1, 2>()
-             .transpose();
+        turn.gradient(told_rate_v).bottomRows<1>().transpose();
   }
   return point;
 }

@@ -6,8 +6,8 @@
 namespace foucault::measurement {
 
 /// Velocity of the point of the vehicle that does not slip, in the vehicle's axes, averaged over a
-/// stretch: M C_v_b (u + omega x l), M = exp(0, pitch, heading) the block `mounting`, l the block
-/// `wheel_lever_arm`, omega the mean rate less the bias.
+/// stretch: M C_v_b (u + omega x l), M the state::MountingTurn, l the block `wheel_lever_arm`,
+/// omega the mean rate less the bias.
 struct VehiclePoint {
   Eigen::Vector3d velocity_v;
   state::RowsByState<3> H;  ///< by all blocks of the layout

@@ -1,23 +1,20 @@
 #include "foucault/state/told_blocks.h"
 
-#include "foucault/core/so3.h"
+#include "foucault/state/mounting_turn.h"
 
 namespace foucault::state {
 namespace {
 
-/// l_v = M R_v_b l_b, M = exp(0, pitch, heading) of the block `mounting` where it is estimated.
+/// l_v = M R_v_b l_b, M the MountingTurn.
 void turn_arm(const SlowBlock& arm, const Told& told, Epoch& epoch) {
   const SlowBlock* mounting = told.layout.find(block::mounting);
-  Eigen::Vector3d turn = Eigen::Vector3d::Zero();
-  if (mounting) turn.tail<2>() = epoch.slow.segment<2>(mounting->index);
-  const Eigen::Matrix3d M = so3::exp(turn).toRotationMatrix();
+  const MountingTurn turn(epoch.slow, mounting);
   const Eigen::Vector3d told_v = told.q_v_b * Eigen::Vector3d(epoch.slow.segment<3>(arm.index));
-  epoch.slow.segment<3>(arm.index) = M * told_v;
+  epoch.slow.segment<3>(arm.index) = turn.matrix() * told_v;
 
   StateMatrix J = StateMatrix::Identity(told.layout.size(), told.layout.size());
-  part(J, arm, arm) = M * told.q_v_b.toRotationMatrix();
-  if (mounting)
-    part(J, arm, *mounting) = -(M * so3::skew(told_v) * so3::right_jacobian(turn)).rightCols<2>();
+  part(J, arm, arm) = turn.matrix() * told.q_v_b.toRotationMatrix();
+  if (mounting) part(J, arm, *mounting) = turn.gradient(told_v);
   epoch.covariance = (J * epoch.covariance * J.transpose()).eval();
 }
 

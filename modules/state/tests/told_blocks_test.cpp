@@ -49,11 +49,13 @@ TEST(ToldBlocks, WholeAndAlongTheVehicle) {
 /// An arm along the vehicle stays what it is, whichever way the IMU is turned in it.
 TEST(ToldBlocks, AlongTheVehicleAsItsMountingWasFound) {
   const Told by = told();
-  const Eigen::Vector3d arm_v(0.5, -0.3, -0.8), point_v(-1.2, 0.1, 0.4), turn(0, 0.12, -0.09);
-  const Eigen::Quaterniond M(Eigen::AngleAxisd(turn.norm(), turn.normalized()));
+  const Eigen::Vector3d arm_v(0.5, -0.3, -0.8), point_v(-1.2, 0.1, 0.4);
+  const Eigen::Vector2d turn(0.12, -0.09);
+  const Eigen::Quaterniond M = Eigen::AngleAxisd(turn[1], Eigen::Vector3d::UnitZ()) *
+                               Eigen::AngleAxisd(turn[0], Eigen::Vector3d::UnitY());
   const Eigen::Quaterniond q_b_v = (M * by.q_v_b).conjugate();
   Epoch epoch = with_slow_blocks({}, by.layout);
-  epoch.slow << 0, q_b_v * arm_v - by.lever_arm_b, turn.tail<2>(), q_b_v * point_v;
+  epoch.slow << 0, q_b_v * arm_v - by.lever_arm_b, turn, q_b_v * point_v;
   const Epoch whole = as_users_know(epoch, by);
   EXPECT_LT((whole.slow.segment<3>(1) - arm_v).norm(), 1e-14);
   EXPECT_LT((whole.slow.tail<3>() - point_v).norm(), 1e-14);

@@ -11,11 +11,11 @@ TEST(VehicleVelocity, IsForwardInAVehicleThatDoesNotSlip) {
   Told told;
   told.layout.add(block::mounting, 0.2);
   told.q_v_b = so3::exp({0.3, -1.1, 2.0});
-  const Eigen::Vector3d mounting(0, 0.1, -0.2);
+  const so3::Euler mounting{0, 0.1, -0.2};
   const Eigen::Quaterniond q_n_v = so3::from_euler({0.02, 0.05, 2.5});
   Epoch epoch = with_slow_blocks({}, told.layout);
-  epoch.slow = mounting.tail<2>();
-  epoch.q_n_b = q_n_v * so3::exp(mounting) * told.q_v_b;
+  epoch.slow = Eigen::Vector2d(mounting.pitch, mounting.heading);
+  epoch.q_n_b = q_n_v * so3::from_euler(mounting) * told.q_v_b;
   epoch.velocity_n = q_n_v * Eigen::Vector3d(12, 0, 0);
   EXPECT_LT((vehicle_velocity(epoch, told).velocity_v - Eigen::Vector3d(12, 0, 0)).norm(), 1e-13);
   EXPECT_GT((vehicle_velocity(epoch, {{}, 0, {}, told.q_v_b}).velocity_v.tail<2>().norm()), 1);

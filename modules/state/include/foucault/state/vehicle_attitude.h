@@ -18,8 +18,8 @@ struct VehicleAttitude {
   Eigen::Vector3d sigma = Eigen::Vector3d::Zero();  ///< of roll, pitch, heading [rad], first order
 };
 
-/// q_n_v = q_n_b * q_v_b^-1 * M^-1, M = exp(t), t = (0, pitch, heading) the block `mounting` where
-/// it is estimated; the perturbation turns as dtheta_v = M (R_v_b dtheta_b - Jr(t) dt).
+/// q_n_v = q_n_b * q_v_b^-1 * M^-1, M the MountingTurn; the perturbation turns as dtheta_v =
+/// M R_v_b dtheta_b - A d(pitch, heading), A its axes.
 VehicleAttitude vehicle_attitude(const Epoch& epoch, const Mounting& mounting);
 
 }  // namespace foucault::state

@@ -12,7 +12,7 @@ struct VehicleVelocity {
   Eigen::Matrix3d covariance_v = Eigen::Matrix3d::Zero();  ///< of its error, first order
 };
 
-/// M R_v_b R_n_b' v_n, M = exp(0, pitch, heading) of the block `mounting` where it is estimated.
+/// M R_v_b R_n_b' v_n, M the MountingTurn.
 VehicleVelocity vehicle_velocity(const Epoch& epoch, const Told& told);
 
 }  // namespace foucault::state
