@@ -207,6 +207,28 @@ TEST_F(SharedData, HalfAMinuteAtRestTellsWhiteNoiseOnly) {
   EXPECT_EQ(occurrences("not told by this recording", outcome.out), 6) << outcome.out;
 }
 
+/// Fixes that a receiver has filtered look better than they are: with the noise that would make
+/// them, no filter keeps to them, and what was told stays.
+TEST_F(SharedData, NoiseWithWhichNoFilterKeepsToTheFixesIsNotTaken) {
+  for (const char* folder : {"car_circles_vn100_rosbag", "car_dresden_2014_fixed"}) {
+    import({"csv", "--mapping", file(std::string(folder) + "/map.yaml"), "--data", file(folder),
+            "--overwrite"});
+    const json metrics = run({"--overwrite"});
+    EXPECT_GT(metrics["epochs"], 90) << folder;
+    EXPECT_NE(metrics["notices"].dump().find("noise as configured"), std::string::npos) << folder;
+  }
+}
+
+/// What `run` cannot process, `check` does not call good.
+TEST_F(SharedData, CheckTellsWhyARunIsRefused) {
+  const auto check = [&](const std::string& folder) {
+    import({"csv", "--mapping", file(folder + "/map.yaml"), "--data", file(folder), "--overwrite"});
+    return foucault({"check", log()}).out;
+  };
+  EXPECT_EQ(occurrences("no initial attitude was found", check("motorbike_iphone")), 1);
+  EXPECT_EQ(occurrences("gravity taken out", check("phone_elab")), 1);
+}
+
 TEST_F(SharedData, WithoutMotionTheHeadingMustBeGiven) {
   import_with("vn310_static_lckf", "vn310_static");
   const Outcome without = foucault({"run", log(), "--out", folder_ / "run"});

@@ -12,6 +12,7 @@
 #include "foucault/core/error.h"
 #include "foucault/diagnosis/examination.h"
 #include "foucault/rawlog/rawlog_source.h"
+#include "foucault/state/told_blocks.h"
 #include "jobs/survey.h"
 #include "settings.h"
 #include "texts/check_text.h"
@@ -25,7 +26,7 @@ struct CheckOptions {
   bool json = false;
 };
 
-constexpr const char* kOffsetSubject = "time offset";  // of diagnosis
+constexpr const char* kClockSubjects[] = {"time offset", "clock drift"};  // of diagnosis
 
 std::vector<double> for_people(std::vector<double> values, double factor) {
   for (double& value : values) value *= factor;
@@ -42,33 +43,44 @@ std::string offset_text(double offset, double sigma) {
 /// half of what was told as unknown.
 diagnosis::Finding finding_of(const evaluation::CalibratedBlock& found,
                               const evaluation::CalibratedBlock& told) {
-  constexpr double kTells = 0.7;  // of the sigma that was told
   const bool angle = found.block.unit == "rad";
   const double factor = angle ? 1 / kDegree : 1;
   const std::vector<double> values = for_people(found.value, factor);
   const std::vector<double> sigmas = for_people(found.sigma, factor);
   std::vector<std::string> texts;
   for (std::size_t i = 0; i < values.size(); ++i) {
-    texts.push_back(found.sigma[i] < kTells * told.sigma[i]
+    texts.push_back(found.sigma[i] <= state::kLeftWhereTold * told.sigma[i]
                         ? fmt::format("{:.4g} (sigma {:.2g})", values[i], sigmas[i])
                         : fmt::format("not told by the recording (taken: {:.4g}, sigma {:.2g})",
                                       values[i], sigmas[i]));
   }
   std::string subject(found.block.name);
   std::replace(subject.begin(), subject.end(), '_', ' ');
-  if (found.block.name == state::block::time_offset.name && found.sigma[0] < kTells * told.sigma[0])
+  if (found.block.name == state::block::time_offset.name &&
+      found.sigma[0] <= state::kLeftWhereTold * told.sigma[0])
     return {diagnosis::Severity::ok, subject, offset_text(found.value[0], found.sigma[0]), ""};
+  const std::string unit = angle                     ? " deg"
+                           : found.block.unit == "1" ? ""
+                                                     : fmt::format(" {}", found.block.unit);
   return {diagnosis::Severity::ok, subject,
-          fmt::format("estimated {}: {}", angle ? "deg" : found.block.unit, fmt::join(texts, ", ")),
-          ""};
+          fmt::format("estimated{}: {}", unit, fmt::join(texts, ", ")), ""};
 }
 
-/// What the methods estimate takes the place of what was matched.
+/// What the methods estimate takes the place of what was matched; where they cannot process the
+/// log, that.
 std::vector<diagnosis::Finding> with_estimates(std::vector<diagnosis::Finding> findings,
                                                const Survey* survey) {
-  if (!survey || survey->blocks.empty()) return findings;
-  const auto is_offset = [](const auto& one) { return one.subject == kOffsetSubject; };
-  findings.erase(std::remove_if(findings.begin(), findings.end(), is_offset), findings.end());
+  if (!survey) return findings;
+  if (!survey->failure.empty()) {
+    findings.push_back({diagnosis::Severity::warning, "processing", survey->failure, ""});
+    return findings;
+  }
+  if (survey->blocks.empty()) return findings;
+  const auto is_of_clocks = [](const diagnosis::Finding& one) {
+    return std::find(std::begin(kClockSubjects), std::end(kClockSubjects), one.subject) !=
+           std::end(kClockSubjects);
+  };
+  findings.erase(std::remove_if(findings.begin(), findings.end(), is_of_clocks), findings.end());
   for (std::size_t i = 0; i < survey->blocks.size(); ++i)
     findings.push_back(finding_of(survey->blocks[i], survey->told[i]));
   return findings;

@@ -152,6 +152,9 @@ RunResult result_of(RunPass& pass, const RunJob& job, const Settings& settings) 
   result.statistics_from_s = settings.output.statistics_from_s;
   result.metrics = pass.output->finish();
   result.forward = pass.output->forward(forward_method(job.method, settings));
+  if (result.forward) {
+    evaluation::judge_separation(result.metrics.trust, result.forward->separation);
+  }
   result.facts = pass.output->facts();
   result.damage = pass.source.damage();
   if (result.metrics.epochs == 0) {
@@ -160,6 +163,8 @@ RunResult result_of(RunPass& pass, const RunJob& job, const Settings& settings) 
   }
   result.calibration = evaluation::calibrated_blocks(
       state::as_users_know(pass.output->last_epoch(), pass.known), pass.known.layout);
+  result.told =
+      evaluation::calibrated_blocks(state::prior_as_users_know(pass.known), pass.known.layout);
   return result;
 }
 

@@ -37,6 +37,7 @@ struct RunResult {
   evaluation::RunMetrics metrics;
   std::optional<ForwardResult> forward;  ///< of a smoother
   std::vector<evaluation::CalibratedBlock> calibration;
+  std::vector<evaluation::CalibratedBlock> told;  ///< the same before anything was measured
   double statistics_from_s = 0;
   RunFacts facts;
   std::string command_line;

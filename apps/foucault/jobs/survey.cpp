@@ -20,13 +20,28 @@ namespace {
 class Watcher : public state::Sink {
  public:
   void epoch(const state::Epoch& epoch) override { last = epoch; }
+  void fix(const state::FixResult& fix) override {
+    if (fix.verdict != state::FixVerdict::used) return;
+    const std::optional<double> square =
+        evaluation::normalized_square(fix.innovation_n, fix.innovation_covariance);
+    if (!square) return;
+    ++fixes;
+    nis_sum += *square;
+  }
   void observation(const state::ObservationResult& result) override {
     if (result.used) ++used[std::string(result.name)];
+  }
+  /// Innovations are not much larger than their sigmas.
+  bool is_believable() const {
+    constexpr double kLargest = 1.5;  // as of a run without reservations
+    return fixes > 0 && nis_sum < 3 * kLargest * kLargest * static_cast<double>(fixes);
   }
 
   std::optional<state::Epoch> last;
   state::Told told;
   std::map<std::string, int> used;
+  int64_t fixes = 0;
+  double nis_sum = 0;
   calibration::UnfoldedWay way;
 };
 
@@ -41,9 +56,9 @@ std::unique_ptr<measurement::Navigator> filter_of(const Settings& settings, bool
   return std::make_unique<ekf::EkfNavigator>(noise, layout, coarse);
 }
 
-/// A filter through the log; none where it cannot be processed, which the run itself tells.
+/// A filter through the log; none where it cannot be processed, and why.
 std::optional<Watcher> look_through(const std::string& log, const Settings& settings,
-                                    bool leaves_way, Console& console) {
+                                    bool leaves_way, Console& console, std::string& failure) {
   Watcher watcher;
   try {
     rawlog::RawlogSource source(log, settings.imu.sample_kind(), settings.rawlog);
@@ -56,7 +71,8 @@ std::optional<Watcher> look_through(const std::string& log, const Settings& sett
       console.progress("looking through", source.progress());
     }
     run.finish();
-  } catch (const DataError&) {
+  } catch (const DataError& error) {
+    failure = error.what();
     return std::nullopt;
   }
   console.clear_progress();
@@ -158,7 +174,8 @@ double turn_on(double usual, const Eigen::Vector3d& bias) {
 
 calibration::RecordedWay recorded_way(const std::string& log, const Settings& settings,
                                       Console& console) {
-  const std::optional<Watcher> watcher = look_through(log, settings, true, console);
+  std::string failure;
+  const std::optional<Watcher> watcher = look_through(log, settings, true, console, failure);
   if (!watcher) return {};
   return calibration::folded(watcher->way, watcher->last->slow);
 }
@@ -211,21 +228,28 @@ void LearnedNoise::apply_to(Settings& settings) const {
 }
 
 /// The noise is learned once the clocks agree to about what is linear, after the first pass; with
-/// it the log is gone through again. A noise that nobody told is learned twice.
+/// it the log is gone through again. A noise that nobody told is learned twice. One with which no
+/// filter keeps to the fixes, where one did with what was told, is not what the IMU has (fixes that
+/// are interpolated or filtered look better than they are).
 Survey Surveyor::survey(const std::string& log, Settings settings) {
   constexpr int kMostPasses = 5;
   constexpr double kMost = 1;  // [s]; as the key
   const bool untold = is_untold(settings);
   if (untold) settings.imu = coarse(settings.imu);
   int questions = untold ? 2 : settings.calibrate.noise == "off" ? 0 : 1;
+  const Settings told = settings;
+  bool told_is_believable = false;
   Survey found;
   const double told_sigma_s = settings.calibrate.time_offset_sigma_s;
   found.time_offset_s = settings.calibrate.time_offset_s;
   found.time_offset_sigma_s = told_sigma_s;
   settings.calibrate = settings.calibrate.resolved({true, true});
   for (int pass = 0; pass < kMostPasses; ++pass) {
-    const std::optional<Watcher> watcher = look_through(log, settings, questions > 0, console_);
+    found.failure.clear();
+    const std::optional<Watcher> watcher =
+        look_through(log, settings, questions > 0, console_, found.failure);
     if (!watcher) break;
+    if (!found.noise) told_is_believable = watcher->is_believable();
     found.blocks = evaluation::calibrated_blocks(
         state::as_users_know(*watcher->last, watcher->told), watcher->told.layout);
     found.told = evaluation::calibrated_blocks(state::prior_as_users_know(watcher->told),
@@ -239,7 +263,7 @@ Survey Surveyor::survey(const std::string& log, Settings settings) {
       const calibration::RecordedWay way = calibration::folded(watcher->way, watcher->last->slow);
       std::optional<LearnedNoise> noise =
           untold ? find_noise(way, watcher->last->bias, found.noise, settings)
-                 : learn_noise(log, way, settings);
+                 : learn_noise(way, settings);
       questions = noise ? questions - 1 : 0;
       if (noise) {
         noise->apply_to(settings);
@@ -257,6 +281,20 @@ Survey Surveyor::survey(const std::string& log, Settings settings) {
     }
     if (!moves && !learns) break;
   }
+  const bool is_news = found.noise && found.noise->is_news;
+  if (is_news && told.calibrate.noise == "auto" && !found.failure.empty() && told_is_believable) {
+    Settings without = told;
+    without.calibrate.noise = "off";
+    warn(log,
+         "noise as configured: with what the recording shows no filter keeps to its fixes, "
+         "whose errors may last (calibrate.noise=on: as the recording shows it)");
+    return survey(log, without);
+  }
+  if (is_news) {
+    warn(log, fmt::format("noise as the recording shows it, not as configured: {} "
+                          "(calibrate.noise=off: as configured)",
+                          noise_text(settings)));
+  }
   return found;
 }
 
@@ -264,8 +302,7 @@ Survey Surveyor::survey(const std::string& log, Settings settings) {
 /// it was told, unless the recording contradicts it: twice the gain of the likelihood would be a
 /// chi-square of as many degrees of freedom as numbers were told, at the next fix and at each
 /// horizon.
-LearnedNoise Surveyor::learn_noise(const std::string& log, const calibration::RecordedWay& way,
-                                   const Settings& settings) {
+LearnedNoise Surveyor::learn_noise(const calibration::RecordedWay& way, const Settings& settings) {
   constexpr double kChance = 1e-4;
   calibration::NoiseModel told;
   told.imu = settings.imu.noise();
@@ -278,14 +315,10 @@ LearnedNoise Surveyor::learn_noise(const std::string& log, const calibration::Re
   const double chance =
       tries * diagnosis::chi_square_tail(2 * all.gain,
                                          static_cast<int>(calibration::axes_of(ways).told.size()));
-  if (settings.calibrate.noise == "auto" && chance > kChance) return noise_of(aids.noise, way);
-  LearnedNoise noise = noise_of(all.noise, way);
-  noise.imu.learned = true;
-  Settings with = settings;
-  noise.apply_to(with);
-  warn(log, fmt::format("noise as the recording shows it, not as configured: {} "
-                        "(calibrate.noise=off: as configured)",
-                        noise_text(with)));
+  const bool is_news = settings.calibrate.noise == "on" || chance <= kChance;
+  LearnedNoise noise = noise_of(is_news ? all.noise : aids.noise, way);
+  noise.imu.learned = true;  // or confirmed
+  noise.is_news = is_news;
   return noise;
 }
 

@@ -18,7 +18,8 @@ struct LearnedNoise {
   double sigma_scale = 1;                   ///< factor on gnss.sigma_scale
   std::optional<Eigen::Vector2d> slip_m_s;  ///< to the right, downward; if wheels were assumed
   std::optional<double> wheel_m_s;
-  std::string preset;  ///< that is nearest, where none was told
+  std::string preset;    ///< that is nearest, where none was told
+  bool is_news = false;  ///< the recording contradicts what was told
 
   void apply_to(Settings& settings) const;
 };
@@ -31,6 +32,7 @@ struct Survey {
   std::optional<LearnedNoise> noise;  ///< as told where the recording does not contradict it
   /// At the end of the log, as users know them: value and sigma, and that of what was told.
   std::vector<evaluation::CalibratedBlock> blocks, told;
+  std::string failure;  ///< why the log cannot be processed with what was found; empty if it can
 };
 
 /// The way of a filter through a log with settings that are complete; empty if it cannot be
@@ -65,8 +67,7 @@ class Surveyor {
 
  private:
   Survey survey(const std::string& log, Settings settings);
-  LearnedNoise learn_noise(const std::string& log, const calibration::RecordedWay& way,
-                           const Settings& settings);
+  LearnedNoise learn_noise(const calibration::RecordedWay& way, const Settings& settings);
   std::optional<LearnedNoise> find_noise(const calibration::RecordedWay& way,
                                          const state::ImuBias& bias,
                                          const std::optional<LearnedNoise>& before,

@@ -626,8 +626,11 @@ std::string Aligner::Impl::why_undecided() const {
 std::string Aligner::Impl::why_not() const {
   const std::string head = "no initial attitude was found: ";
   const std::string remedy =
-      "; give alignment.heading_deg, or alignment.mode=given with roll_deg, pitch_deg and "
-      "heading_deg";
+      given_.heading ? "; see `foucault check`, or give alignment.mode=given with roll_deg and "
+                       "pitch_deg, too"
+                     : "; see `foucault check` for what else is wrong, then give "
+                       "alignment.heading_deg, or alignment.mode=given with roll_deg, pitch_deg "
+                       "and heading_deg";
   if (!first_increment_ns_) return head + "there is no IMU data";
   if (!first_fix_ns_) return head + "there is no usable GNSS fix";
   if (last_fix_->t_ns < *first_increment_ns_ || *last_increment_ns_ < *first_fix_ns_) {
@@ -644,11 +647,18 @@ std::string Aligner::Impl::why_not() const {
     return head + fmt::format(
                       "{} beginnings were tried, and from none does a filter keep to the "
                       "fixes: axes, the sign of the accelerometer, clocks, the lever arm or "
-                      "the noise are wrong; see `foucault check`",
+                      "the noise are wrong; `foucault check` names those that it can tell",
                       left_out_);
   }
   if (belief_) return head + why_undecided() + remedy;
   if (rest_.established()) {
+    const double seconds = seconds_between(track_.begin_ns(), *last_increment_ns_);
+    if (seconds < kEnoughRest)
+      return head + fmt::format(
+                        "the vehicle rested for all of {:.1f} s, which does not tell the heading; "
+                        "give alignment.mode=given with roll_deg, pitch_deg and heading_deg, or "
+                        "record {:.0f} s and give alignment.heading_deg",
+                        seconds, kEnoughRest);
     return head + "the vehicle rested all the time, which does not tell the heading" + remedy;
   }
   return head +

@@ -512,6 +512,23 @@ TEST(Alignment, SaysWhyThereIsNone) {
   EXPECT_NE(outcome.why_not.find("alignment.heading_deg"), std::string::npos) << outcome.why_not;
 }
 
+/// What was done already is not advised again, and what is advised suffices.
+TEST(Alignment, SaysWhatAShortRestNeeds) {
+  Sensors sensors = industrial_sensors();
+  Drive standing;
+  standing.duration = 6;
+  const DriveSimulator simulator(standing, sensors);
+  const imu::ImuNoise noise = noise_of(sensors, 1e-4, 0.015);
+  AlignmentOptions options;
+  options.heading_deg = 10;
+  const std::string given = align(simulator, sensors, noise, options).why_not;
+  EXPECT_NE(given.find("rested for all of 6.0 s"), std::string::npos) << given;
+  EXPECT_NE(given.find("record 10 s"), std::string::npos) << given;
+  standing.duration = 20;
+  const DriveSimulator longer(standing, sensors);
+  EXPECT_TRUE(align(longer, sensors, noise, options).initial);
+}
+
 TEST(Alignment, VibrationAtRestDoesNotHideIt) {
   Sensors sensors = industrial_sensors();
   // As a running engine: 2.3 deg/s and 0.14 m/s^2 a sample at 100 Hz, white.

@@ -18,9 +18,9 @@ constexpr double kRestTolerance = 0.15;
 constexpr double kStrongest = 20 * kStandardGravity;
 /// The mean over a time T is gravity less the change of velocity over T. A parabolic flight is
 /// without weight for 25 s, and bears 1 g and more before and after: 0.58 g over a minute, in which
-/// less than a third would be a change by 390 m/s.
-constexpr double kWeakest = kStandardGravity / 3;
-constexpr double kWeakFor = 60;  // [s]
+/// less than a third would be this change.
+constexpr double kLargestChange = 390;  // [m/s]
+constexpr double kWeakFor = 60;         // [s]
 /// Scale factors of consumer IMUs are within 3 %, their offsets within 0.8 m/s^2 (data sheets of
 /// the cheapest, MPU-6050: 3 %, 80 mg), 11 % of gravity together; twice that is no IMU's.
 constexpr double kLargestError = 0.2;
@@ -63,11 +63,16 @@ std::optional<WrongForce> wrong_factor(const MeasuredFactor& factor, double inte
       "correct unit or scale in the import (csv: accel_unit, accel_scale)"};
 }
 
+double weakest(double seconds) {
+  return std::min((1 - kLargestError) * kStandardGravity,
+                  kStandardGravity - kLargestChange / seconds);
+}
+
 /// Rest has one direction; motion without gravity, which may be as long, has not.
 std::optional<WrongForce> wrong_mean(const ForceFacts& force) {
   constexpr double kOneDirection = 0.9;  // of the length
   const bool rests = force.mean.norm() > kOneDirection * force.length;
-  const bool too_weak = force.length < kWeakest && force.seconds >= kWeakFor;
+  const bool too_weak = force.seconds >= kWeakFor && force.length < weakest(force.seconds);
   const std::optional<WrongForce> unit =
       wrong_unit(force.length / kStandardGravity, too_weak ? force.interval_s : 0);
   if (rests && unit) return unit;
@@ -75,7 +80,8 @@ std::optional<WrongForce> wrong_mean(const ForceFacts& force) {
   return WrongForce{fmt::format("specific force is {:.3g} m/s^2 where gravity is 9.8 (wrong units, "
                                 "or gravity taken out)",
                                 force.length),
-                    "name unit or scale in the import (csv: accel_unit, accel_scale)"};
+                    "name unit or scale in the import (csv: accel_unit, accel_scale), or record "
+                    "accelerations with gravity"};
 }
 
 }  // namespace

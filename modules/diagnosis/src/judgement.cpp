@@ -97,8 +97,9 @@ void judge_date(const LogFacts& facts, Judgement& out) {
 void judge_reference(const LogFacts& facts, Judgement& out) {
   const ReferenceFacts& reference = facts.reference;
   if (reference.compared == 0) return;
-  const std::string text = fmt::format("{:.4g} m (RMS) from fixes within half a second, {} poses",
-                                       reference.rms_m, reference.compared);
+  const std::string text =
+      fmt::format("{:.4g} m (RMS) from fixes, lever arm{} included, {} poses", reference.rms_m,
+                  reference.moved ? "" : " and half a second of motion", reference.compared);
   if (2 * reference.far <= reference.compared) return out.ok("reference", text);
   out.warn("reference", text + "; a run is not compared with it",
            "correct columns and units of the reference in the import");
@@ -146,7 +147,7 @@ std::string velocity_remedy(const VelocityFacts& v) {
     }
   }
   return "correct columns, signs and unit of the velocities in the import, or latitude and "
-         "longitude; else leave them out (gnss: {velocity: false})";
+         "longitude; else leave them out of the import (gnss: {velocity: false} in its mapping)";
 }
 
 std::string velocity_text(const VelocityFacts& v) {
@@ -285,7 +286,8 @@ void judge_axes(const LogFacts& facts, Judgement& out) {
                       : out.warn("axes", side->text, side->remedy);
     }
   }
-  if (!facts.accelerations) return out.ok("axes", "accelerations are too small to tell");
+  if (!facts.accelerations)
+    return out.ok("axes", "the fixes do not tell accelerations well enough to judge");
   const AccelerationFit& fit = *facts.accelerations;
   const double angle = fit.angle.value;
   const std::string text = fmt::format(

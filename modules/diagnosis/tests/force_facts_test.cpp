@@ -66,6 +66,14 @@ TEST(WrongForce, AMeanIsRefusedOnlyIfNoVehicleHasIt) {
   EXPECT_THAT(wrong_mean(40 * kG), HasSubstr("wrong units, or gravity taken out"));
 }
 
+/// The longer it lasts, the less a change of velocity can take from gravity.
+TEST(WrongForce, HalfOfGravityOverMinutesIsNone) {
+  EXPECT_EQ(wrong_mean(0.58 * kG, 60), "") << "a parabolic flight";
+  EXPECT_EQ(wrong_mean(0.49 * kG, 70), "");
+  EXPECT_THAT(wrong_mean(0.49 * kG, 149), HasSubstr("4.81 m/s^2 where gravity is 9.8"));
+  EXPECT_EQ(wrong_mean(0.9 * kG, 3600), "") << "scale and offset of a cheap accelerometer";
+}
+
 TEST(WrongForce, AFactorDecidesWhereThereIsOne) {
   EXPECT_EQ(wrong_factor(1.1), "");
   EXPECT_EQ(wrong_factor(1.4, 0.1), "");  // it is not sure

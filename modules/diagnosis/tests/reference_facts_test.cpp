@@ -43,5 +43,25 @@ TEST(ReferenceWatch, PosesBesideFixes) {
   EXPECT_EQ(ReferenceWatch().facts().compared, 0);
 }
 
+/// An airliner is 125 m further half a second later, which says nothing of its reference.
+TEST(ReferenceWatch, AMovingPoseIsComparedAtTheStampOfTheFix) {
+  const Geodetic origin{0.8, 0.2, 300};
+  const geodesy::LocalFrame frame(origin);
+  const auto facts = [&](bool with_velocity) {
+    ReferenceWatch watch;
+    watch.add(fix_at(1, origin));
+    ReferencePose pose;
+    pose.t_ns = nanoseconds(1.5);
+    pose.position = frame.to_geodetic({125, 0.8, 0});
+    if (with_velocity) pose.velocity_n = Eigen::Vector3d(250, 0, 0);
+    watch.add(pose);
+    return watch.facts();
+  };
+  EXPECT_NEAR(facts(true).rms_m, 0.8, 0.01);
+  EXPECT_TRUE(facts(true).moved);
+  EXPECT_NEAR(facts(false).rms_m, 125, 0.1);
+  EXPECT_FALSE(facts(false).moved);
+}
+
 }  // namespace
 }  // namespace foucault::diagnosis

@@ -1,6 +1,7 @@
 #include "foucault/evaluation/trust.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -159,6 +160,34 @@ std::optional<Finding> on_course(const CourseOffset& course) {
                                     course.sigma() / kDegree)};
 }
 
+std::vector<std::string> too_far_apart(const std::vector<std::pair<const char*, double>>& sizes) {
+  std::vector<std::string> parts;
+  for (const auto& [name, size] : sizes) {
+    if (size > kBelievable.high) parts.push_back(fmt::format("{} by {:.1f} times", name, size));
+  }
+  return parts;
+}
+
+std::optional<Finding> on_separated_motion(const SeparationMetrics& s) {
+  const std::vector<std::string> parts =
+      too_far_apart({{"velocity", s.velocity_size}, {"attitude", s.attitude_size}});
+  if (parts.empty()) return std::nullopt;
+  return Finding{true,
+                 fmt::format("forward and smoothed run tell different motions, {} what their "
+                             "sigmas allow: axes, clocks, velocities or the noise of the IMU are "
+                             "wrong; see `foucault check`, and the separation in the report",
+                             fmt::join(parts, ", "))};
+}
+
+std::optional<Finding> on_separated_position(const SeparationMetrics& s) {
+  if (too_far_apart({{"position", s.position_size}}).empty()) return std::nullopt;
+  return Finding{false,
+                 fmt::format("the run forward was too sure of the position: smoothing moved it by "
+                             "{:.1f} times what their sigmas allow (a lever arm or a clock that "
+                             "came out otherwise); see the separation in the report",
+                             s.position_size)};
+}
+
 }  // namespace
 
 void CourseOffset::add(const Eigen::Vector3d& velocity_n, double heading, double heading_sigma) {
@@ -206,6 +235,17 @@ Trust trust_in(const Consistency& consistency, const StateCount& states, const A
   }
   trust.reasons.insert(trust.reasons.end(), remarks.begin(), remarks.end());
   return trust;
+}
+
+void judge_separation(Trust& trust, const SeparationMetrics& separation) {
+  if (separation.samples < kFewestFixes) return;
+  if (const std::optional<Finding> finding = on_separated_motion(separation)) {
+    trust.trustworthy = false;
+    trust.reasons.insert(trust.reasons.begin(), finding->text);
+  }
+  if (const std::optional<Finding> finding = on_separated_position(separation)) {
+    trust.reasons.push_back(finding->text);
+  }
 }
 
 }  // namespace foucault::evaluation

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
 #include <vector>
 
 #include "foucault/core/so3.h"
@@ -75,6 +76,59 @@ TEST(Separation, SigmasThatGrewLeaveNone) {
   s.collector.smoothed(epoch_at(1, 0, 0, 4.1));
   ASSERT_EQ(s.told.size(), 1u);
   EXPECT_EQ(s.told[0].position_sigma, Eigen::Vector3d::Zero());
+}
+
+/// Of an estimate from many measurements and one from the first of them: the covariance of their
+/// difference is that of the one less that of the other, and its square a chi-square of three.
+TEST(SeparationSquare, IsOfThreeDegreesOfFreedomIfTheCovariancesAreRight) {
+  std::mt19937 rng{42};
+  std::normal_distribution<double> normal;
+  const auto draw = [&] { return Eigen::Vector3d(normal(rng), normal(rng), normal(rng)); };
+  Eigen::Matrix3d root;
+  root << 1, 0, 0, 0.7, 0.3, 0, -2, 0.1, 0.5;
+  const Eigen::Matrix3d first = root * root.transpose();
+  const int more = 4;
+  double sum = 0;
+  constexpr int kSeeds = 4000;
+  for (int seed = 0; seed < kSeeds; ++seed) {
+    const Eigen::Vector3d early = root * draw();
+    Eigen::Vector3d all = early;
+    for (int i = 1; i < more; ++i) all += root * draw();
+    all /= more;
+    sum += *separation_square(all - early, first, first / more);
+  }
+  EXPECT_NEAR(sum / kSeeds, 3, 4 * std::sqrt(6.0 / kSeeds));  // 4 sigmas of the mean
+}
+
+TEST(SeparationSquare, WhereNothingIsLeftATenthOfASigmaIsRounding) {
+  const Eigen::Matrix3d P = Eigen::Matrix3d::Identity();
+  EXPECT_NEAR(*separation_square({0.1, 0, 0}, P, P), 1, 1e-9);
+  EXPECT_NEAR(*separation_square({0.1, 0, 0}, P, 1.1 * P), 1, 1e-9) << "sigmas that grew";
+  EXPECT_FALSE(separation_square({1, 0, 0}, Eigen::Matrix3d::Zero(), P));
+}
+
+TEST(Separation, SizesAreOneIfTheCovariancesAreRight) {
+  std::mt19937 rng{42};
+  std::normal_distribution<double> normal;
+  const auto size_of = [&](double factor) {
+    Separations s;
+    constexpr int kEpochs = 2000;
+    for (int t = 0; t < kEpochs; ++t) s.collector.forward(epoch_at(t, 0, 0, 25e-4));
+    for (int t = 0; t < kEpochs; ++t) {
+      const double sigma = 0.03 * factor;  // of what is left of 5 after 4 hundredths
+      state::Epoch epoch = epoch_at(t, 0, 0, 16e-4);
+      const auto draw = [&] { return Eigen::Vector3d(normal(rng), normal(rng), normal(rng)); };
+      epoch.velocity_n = sigma * draw();
+      epoch.q_n_b = so3::exp(sigma * draw());
+      s.collector.smoothed(epoch);
+    }
+    return s.collector.metrics();
+  };
+  // A median of 2000 squares is known to 2.5 %, its root to half of that.
+  EXPECT_NEAR(size_of(1).velocity_size, 1, 0.05);
+  EXPECT_NEAR(size_of(1).attitude_size, 1, 0.05);
+  EXPECT_NEAR(size_of(4).attitude_size, 4, 0.2);
+  EXPECT_EQ(size_of(1).position_size, 0) << "it stayed";
 }
 
 }  // namespace

@@ -58,6 +58,35 @@ class MadeUpRun {
   double t_ = 0;
 };
 
+Trust trust_of(double position, double velocity, double attitude, int64_t samples = 100) {
+  Trust trust{true, {"a remark"}};
+  SeparationMetrics separation;
+  separation.samples = samples;
+  separation.position_size = position;
+  separation.velocity_size = velocity;
+  separation.attitude_size = attitude;
+  judge_separation(trust, separation);
+  return trust;
+}
+
+TEST(Trust, RunsThatTellDifferentMotionsAreNotBelieved) {
+  EXPECT_TRUE(trust_of(2, 2, 2).trustworthy);
+  EXPECT_THAT(trust_of(2, 2, 2).reasons, ElementsAre("a remark"));
+  const Trust apart = trust_of(1, 1, 4.2);
+  EXPECT_FALSE(apart.trustworthy);
+  EXPECT_THAT(apart.reasons, ElementsAre(HasSubstr("attitude by 4.2 times"), "a remark"));
+  EXPECT_THAT(trust_of(1, 8, 4).reasons[0],
+              HasSubstr("velocity by 8.0 times, attitude by 4.0 times"));
+  EXPECT_TRUE(trust_of(1, 8, 8, 9).trustworthy) << "too few";
+}
+
+/// Fixes hold it in both.
+TEST(Trust, APositionThatSmoothingMovedIsNamed) {
+  const Trust moved = trust_of(5, 1, 1);
+  EXPECT_TRUE(moved.trustworthy);
+  EXPECT_THAT(moved.reasons, ElementsAre("a remark", HasSubstr("by 5.0 times")));
+}
+
 /// A remedy that names a key names one that exists.
 TEST(Trust, RemediesOfAidsAreKeysThatThereAre) {
   const auto reasons = [](std::string_view name) {

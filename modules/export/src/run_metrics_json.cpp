@@ -178,6 +178,9 @@ Json separation_json(const evaluation::SeparationMetrics& separation) {
       .with("roll_rms_deg", json_if(exists, euler_deg[0]))
       .with("pitch_rms_deg", json_if(exists, euler_deg[1]))
       .with("heading_rms_deg", json_if(exists, euler_deg[2]))
+      .with("position_size", json_if(exists, separation.position_size))
+      .with("velocity_size", json_if(exists, separation.velocity_size))
+      .with("attitude_size", json_if(exists, separation.attitude_size))
       .with("samples", separation.samples);
 }
 

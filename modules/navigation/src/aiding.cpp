@@ -142,10 +142,13 @@ std::optional<Aiding::Rest> Aiding::rest(const state::Epoch& now, bool held,
 std::optional<std::string> Aiding::remark() const {
   const std::optional<diagnosis::SlipFindings>& found = slip_.slip();
   if (options_.aids.nonholonomic != "auto" || !any_ || !found || slip_sigma()) return std::nullopt;
+  const std::string what =
+      wheels_assumed_ == 0 ? std::string("was not used")
+                           : fmt::format("was used {} times and then given up", wheels_assumed_);
   return fmt::format(
-      "that wheels do not slip was not used: beside rolling forward it moves by {:.2f} m/s to the "
-      "side and {:.2f} m/s up and down (1 sigma)",
-      found->deviation[0], found->deviation[1]);
+      "that wheels do not slip {}: beside rolling forward it moves by {:.2f} m/s to the side and "
+      "{:.2f} m/s up and down (1 sigma)",
+      what, found->deviation[0], found->deviation[1]);
 }
 
 std::optional<Eigen::Vector2d> Aiding::slip_sigma() const {
@@ -175,8 +178,9 @@ std::optional<double> Aiding::wheel_sigma() const {
 void Aiding::use_wheels(int64_t t_ns, const measurement::BodyStretch& stretch,
                         measurement::Navigator& navigator) {
   if (const std::optional<Eigen::Vector2d> sigma = slip_sigma()) {
-    use(t_ns, std::make_shared<measurement::Nonholonomic>(stretch, options_.mounting.q_v_b, *sigma),
-        navigator);
+    const auto wheels =
+        std::make_shared<measurement::Nonholonomic>(stretch, options_.mounting.q_v_b, *sigma);
+    if (use(t_ns, wheels, navigator)) ++wheels_assumed_;
   }
   const std::optional<measurement::BodyStretch> wheel = stretch_.wheel.stretch();
   const std::optional<double> sigma = wheel_sigma();

@@ -42,7 +42,7 @@ class Aiding {
   /// Uses what there is. held: fixes hold the state.
   void stop(int64_t t_ns, bool held, measurement::Navigator& navigator);
 
-  /// Why wheels were not assumed, one line; none if they were, or nothing is known.
+  /// Why wheels are not assumed, or not any more, one line; none if they are, or nothing is known.
   std::optional<std::string> remark() const;
 
  private:
@@ -70,6 +70,7 @@ class Aiding {
   NavigationRunOptions options_;
   state::Sink& sink_;
   bool any_ = false;
+  int wheels_assumed_ = 0;  ///< stops at which they were
   int64_t begin_ns_ = 0, end_ns_ = 0;
   Stretch stretch_;
   std::deque<WheelSpeed> wheel_waits_;

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "foucault/core/consistency.h"
+#include "foucault/evaluation/separation.h"
 #include "foucault/state/result.h"
 
 /// Whether a run can be believed, judged from what was kept: the innovations of used fixes, how
@@ -71,5 +72,12 @@ bool is_finite(const state::Epoch& epoch);
 /// innovations as these are worth lies with 99.9 %.
 Trust trust_in(const Consistency& consistency, const StateCount& states, const Aids& aids = {},
                const FixCount& fixes = {}, const CourseOffset& course = {});
+
+/// Of a smoothed run, by what smoothing made of the run forward. Ten samples and more count, and
+/// sizes above 3, which a single independent sample of three components reaches once in 10 000
+/// times; errors of states last, and how many samples are independent is not known.
+/// - Condemned: velocity or attitude. The two describe different motions.
+/// - Named: position. Fixes hold it in both; the run forward was too sure of it, as of a lever arm.
+void judge_separation(Trust& trust, const SeparationMetrics& separation);
 
 }  // namespace foucault::evaluation

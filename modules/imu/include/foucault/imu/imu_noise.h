@@ -17,7 +17,7 @@ struct ImuNoise {
   double bias_tau = 3600;          ///< correlation time [s]
   double gyro_turn_on_sigma = 0;   ///< [rad/s]
   double accel_turn_on_sigma = 0;  ///< [m/s^2]
-  /// White noise and biases are those that a whole recording shows, not what was told.
+  /// White noise and biases are those that a whole recording shows, or does not contradict.
   bool learned = false;
 
   /// Power of the driving noise, q = 2 sigma^2 / tau [(rad/s)^2/s], [(m/s^2)^2/s].

@@ -15,6 +15,9 @@ struct Told {
   Eigen::Quaterniond q_v_b = Eigen::Quaterniond::Identity();  ///< the mounting as told
 };
 
+/// A recording tells something of a number if it leaves at most this of the sigma that was told.
+constexpr double kLeftWhereTold = 0.7;
+
 /// The epoch with slow blocks as users know them: the whole time offset; lever arms along the
 /// vehicle's forward, right, down, as its mounting was found, that to the antenna as a whole. Its
 /// covariance follows.
