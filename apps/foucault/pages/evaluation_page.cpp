@@ -320,8 +320,9 @@ page::Table ablation_table(const evaluation::EvaluationSummary& summary,
       evaluation::ablation_table(evaluation::ablation_rows(summary.overall(), ablation)),
       "RMS over the same outages of the largest drift in each; differences are from the same "
       "method with the configuration as it is. The interval is a 95 % bootstrap over outages, "
-      "drawn in pairs: where it holds zero, these outages do not tell what the part is worth. All "
-      "that follows is of the configuration as it is.");
+      "drawn in pairs: where it holds zero, these outages do not tell what the part is worth. "
+      "Parts that the recordings have no use for are left out. All that follows is of the "
+      "configuration as it is.");
 }
 
 }  // namespace

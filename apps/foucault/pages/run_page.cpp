@@ -4,11 +4,13 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include "foucault/core/fix_quality.h"
 #include "foucault/core/time.h"
 #include "foucault/core/units.h"
+#include "foucault/state/told_blocks.h"
 #include "texts/run_text.h"
 
 namespace foucault::app {
@@ -80,21 +82,31 @@ std::string fix_types_text(const RunFacts& facts) {
   return parts.empty() ? "-" : fmt::format("{}", fmt::join(parts, ", "));
 }
 
-const evaluation::CalibratedBlock* find_block(const RunResult& result, std::string_view name) {
-  for (const evaluation::CalibratedBlock& block : result.calibration) {
+const evaluation::CalibratedBlock* find_block(
+    const std::vector<evaluation::CalibratedBlock>& blocks, std::string_view name) {
+  for (const evaluation::CalibratedBlock& block : blocks) {
     if (block.block.name == name) return &block;
   }
   return nullptr;
 }
 
-std::string lever_arm_text(const RunResult& result) {
-  if (const evaluation::CalibratedBlock* found = find_block(result, "lever_arm")) {
-    const std::vector<double>& v = found->value;
-    const std::vector<double>& s = found->sigma;
-    return fmt::format(
-        "estimated: forward {:.3f} ± {:.3f}, right {:.3f} ± {:.3f}, down {:.3f} ± {:.3f} m", v[0],
-        s[0], v[1], s[1], v[2], s[2]);
+/// Of what hardly came from the recording, so.
+std::string estimated_arm_text(const evaluation::CalibratedBlock& found,
+                               const evaluation::CalibratedBlock& told) {
+  constexpr std::array<const char*, 3> kAxes{"forward", "right", "down"};
+  std::vector<std::string> parts;
+  for (size_t i = 0; i < kAxes.size(); ++i) {
+    const bool tells = found.sigma[i] <= state::kLeftWhereTold * told.sigma[i];
+    parts.push_back(fmt::format("{} {:.3f} ± {:.3f} m{}", kAxes[i], found.value[i], found.sigma[i],
+                                tells ? "" : " (hardly told by the recording)"));
   }
+  return fmt::format("estimated: {}", fmt::join(parts, ", "));
+}
+
+std::string lever_arm_text(const RunResult& result) {
+  const evaluation::CalibratedBlock* found = find_block(result.calibration, "lever_arm");
+  const evaluation::CalibratedBlock* told = find_block(result.told, "lever_arm");
+  if (found && told) return estimated_arm_text(*found, *told);
   if (!result.facts.lever_arm_b) return "-";
   if (!result.facts.lever_arm_known) return "not known, zero was taken";
   const Eigen::Vector3d& arm = *result.facts.lever_arm_b;

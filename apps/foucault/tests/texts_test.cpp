@@ -153,6 +153,21 @@ TEST(RunText, Verdicts) {
 TEST(RunPage, ATableForWhatThereIs) {
   EXPECT_EQ(metrics_tables(some_result()).size(), 3u);  // calibration and aids have sections
   EXPECT_EQ(metrics_tables({}).size(), 1u) << "the summary";
+}
+
+/// The same rule as under Calibration and in `check`.
+TEST(RunPage, ALeverArmThatTheRecordingHardlyTellsSaysSo) {
+  RunResult result;
+  result.calibration = {{state::block::lever_arm, {0.1, -0.3, -0.8}, {0.002, 0.034, 0.036}}};
+  result.told = {{state::block::lever_arm, {0.1, -0.3, -0.8}, {0.05, 0.05, 0.05}}};
+  const std::vector<page::Table> tables = metrics_tables(result);
+  std::string arm;
+  for (const std::vector<std::string>& row : tables.at(0).rows) {
+    if (row[0] == "Lever arm, IMU to antenna") arm = row[1];
+  }
+  EXPECT_EQ(arm,
+            "estimated: forward 0.100 ± 0.002 m, right -0.300 ± 0.034 m, down -0.800 ± 0.036 m "
+            "(hardly told by the recording)");
   EXPECT_EQ(key_numbers(some_result()).size(), 6u);
   EXPECT_EQ(key_numbers({}).size(), 3u);
 }

@@ -43,11 +43,13 @@ Table aids_table(const std::vector<AidSummary>& aids) {
   return table;
 }
 
-/// Logarithmic, with the bounds; what lies far out becomes arrowheads.
-Axis aid_axis(const AidSummary& aid, double largest) {
+/// Logarithmic, with the bounds and nine tenths of the values; what lies far out becomes
+/// arrowheads.
+Axis aid_axis(const AidSummary& aid, const std::vector<double>& values, double largest) {
   constexpr double kHighest = 1e3;
   Axis axis{aid.dimension == 1 ? "NIS" : fmt::format("NIS / {}", aid.dimension), {}, AxisKind::log};
-  axis.min = 0.5 * aid.single_band.low / aid.dimension;
+  axis.min = std::min(0.5 * aid.single_band.low / aid.dimension,
+                      0.7 * positive_quantile(values, 0.1).value_or(1));
   axis.max = 1.5 * std::clamp(largest, 10.0, kHighest);
   return axis;
 }
@@ -65,7 +67,7 @@ Panel aid_panel(const RunData& data, const AidSummary& aid, const SquareHistory&
   const std::string title = title_of(aid.name);
   const double largest =
       std::max(largest_finite(used.columns[0]), largest_finite(rejected.columns[0]));
-  Panel panel = time_panel(data, aid_axis(aid, largest));
+  Panel panel = time_panel(data, aid_axis(aid, used.columns[0], largest));
   panel.title = title;
   panel.note =
       fmt::format("mean {} · {} used, {} rejected", mean_text(aid), aid.used, aid.rejected);

@@ -13,6 +13,7 @@
 #include "foucault/core/constants.h"
 #include "foucault/plot/axis_scale.h"
 #include "foucault/plot/text.h"
+#include "foucault/state/told_blocks.h"
 #include "run_panels.h"
 
 namespace foucault::content {
@@ -92,7 +93,7 @@ struct ShownRow {
   bool smoothed = false;  ///< these are of the forward run, before the last ones
 
   /// The recording has told at least something of it.
-  bool told() const { return last_sigma <= 0.7 * prior_sigma; }
+  bool told() const { return last_sigma <= state::kLeftWhereTold * prior_sigma; }
   bool left_prior() const { return std::abs(last - prior) > 3 * prior_sigma; }
   std::string title() const { return name.empty() ? block : block + ", " + name; }
 };

@@ -10,6 +10,7 @@
 
 #include "foucault/plot/text.h"
 #include "run_panels.h"
+#include "statistics_tables.h"
 
 namespace foucault::content {
 
@@ -17,8 +18,6 @@ using namespace plot;
 using namespace page;
 
 namespace {
-
-constexpr double kExpectedMean = 3;  // of the square of three components
 
 std::string percent(double share) { return number_text(100 * share, 1) + " %"; }
 
@@ -117,6 +116,13 @@ std::string nees_verdict(const Consistency& c) {
   return text;
 }
 
+bool is_too_careful(const Consistency& c) {
+  return std::any_of(kNees.begin(), kNees.end(), [&](const NamedNees& nees) {
+    const std::optional<SquareConsistency>& squares = c.*nees.squares;
+    return squares && squares->mean < squares->mean_band.low;
+  });
+}
+
 std::string prediction_verdict(const std::vector<PredictionConsistency>& predictions) {
   const auto outside =
       std::find_if(predictions.rbegin(), predictions.rend(),
@@ -212,25 +218,15 @@ std::string square_note(const SquareConsistency& squares) {
                      band_text(squares.mean_band), percent(squares.inside_share));
 }
 
-/// The value that a share of the finite ones is below.
-double low_value(std::vector<double> values, double share) {
-  values.erase(std::remove_if(values.begin(), values.end(),
-                              [](double value) { return !std::isfinite(value) || value <= 0; }),
-               values.end());
-  if (values.empty()) return kExpectedMean;
-  const auto at =
-      values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
-}
-
-/// A logarithmic axis that shows the bounds and nearly all values; those far out become arrowheads.
+/// A logarithmic axis that shows the bounds and nine tenths of the values at least; those far out
+/// become arrowheads.
 Axis square_axis(const std::string& label, const std::vector<double>& values, double largest) {
   constexpr double kLowest = 0.03;  // 0.15 % of chi-square with 3 degrees lie below
   constexpr double kHighest = 1e3;
   Axis axis{label, {}, AxisKind::log};
-  axis.min = std::min(kLowest, low_value(values, 0.01));
-  axis.max = 1.5 * std::clamp(largest, 20.0, kHighest);
+  axis.min = std::min(kLowest, 0.7 * positive_quantile(values, 0.01).value_or(kLowest));
+  axis.max = 1.5 * std::max(std::clamp(largest, 20.0, kHighest),
+                            positive_quantile(values, 0.9).value_or(0));
   return axis;
 }
 
@@ -453,7 +449,17 @@ Section consistency_section(const RunData& data, const std::string& subtitle) {
     section.paragraphs.push_back(size_verdict(c.nis) + tail_verdict(c.innovations) +
                                  colour_verdict(c.autocorrelation));
   }
-  const std::string against_reference = nees_verdict(c);
+  std::string against_reference = nees_verdict(c);
+  if (c.attitude_nees && c.attitude_nees->mean > c.attitude_nees->mean_band.high &&
+      !error_words(data).empty()) {
+    against_reference +=
+        " That of the attitude counts the constant angle that is named under Errors, too.";
+  }
+  if (is_too_careful(c) && !data.blocks.empty()) {
+    against_reference +=
+        " It must be where what is calibrated was told truer than its prior allows for, as a lever "
+        "arm of a simulation that is told exactly.";
+  }
   if (!against_reference.empty()) section.paragraphs.push_back(against_reference);
   if (c.nis.samples > 0 || c.position_nees) section.tables.push_back(square_table(c));
   if (!c.predictions.empty()) {

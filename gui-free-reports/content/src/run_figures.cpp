@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <string_view>
 #include <utility>
 
@@ -197,6 +198,14 @@ Curve broken_at_half_turns(const Curve& angle) {
   return result;
 }
 
+/// All of it where the line breaks; where it does not, what there is.
+void show_half_turns(const Curve& curve, size_t continuous, Axis& axis) {
+  if (curve.t.size() == continuous) return;
+  axis.kind = AxisKind::bearing;
+  axis.min = -180;
+  axis.max = 180;
+}
+
 void show_bearing(const Curve& curve, size_t continuous, Axis& axis) {
   axis.kind = AxisKind::bearing;
   if (curve.t.size() == continuous) return;  // never over north
@@ -225,8 +234,9 @@ Panel triad_panel(const RunData& data, const TriadFigure& look, const DecimatedT
   if (look.axes[axis] == kHeading && !look.is_error) {
     curve = on_circle(curve);
     show_bearing(curve, rows.x.size(), panel.y);
-  } else if (look.axes[axis] == kRoll) {
+  } else if (look.axes[axis] == kRoll && !look.is_error) {
     curve = broken_at_half_turns(curve);
+    show_half_turns(curve, rows.x.size(), panel.y);
   }
   const std::string column = column_name(look.axes[axis], look.noun);
   const std::vector<double> zero(curve.t.size(), 0);
@@ -301,7 +311,8 @@ std::vector<Category> quality_categories() {
 /// Rows of a gap are left out: points are not joined.
 Series fix_points(const DecimatedTable::Rows& rows) {
   Series series{"fix", "fix north", Mark::points};
-  series.size = 1.9;
+  constexpr size_t kFew = 500;
+  series.size = rows.x.size() < kFew ? 3.4 : 1.9;  // to be seen beside the line, and apart
   series.categories = quality_categories();
   series.x = rows.columns[1];
   series.y = rows.columns[0];
@@ -395,14 +406,52 @@ std::optional<Figure> ground_track(const RunData& data, const std::string& subti
 
 namespace {
 
+/// What may be told of sigmas that jump from epoch to epoch, as between fixes or standstills.
+struct SigmaStep {
+  double seconds = 1;
+  bool thins = false;  ///< there are epochs that are closer
+};
+
+SigmaStep sigma_step(const std::vector<double>& t) {
+  constexpr double kPoints = 1500;  // more than there are pixels
+  SigmaStep step;
+  if (t.size() < 2) return step;
+  step.seconds = std::max(step.seconds, (t.back() - t.front()) / kPoints);
+  step.thins = static_cast<double>(t.size()) * step.seconds > 1.5 * (t.back() - t.front());
+  return step;
+}
+
+/// The largest of each step, where it is; gaps stay.
+Series largest_of_steps(Series series, double step) {
+  std::vector<double> x, y;
+  std::optional<double> begun;
+  for (size_t i = 0; i < series.x.size(); ++i) {
+    const double bin = std::floor(series.x[i] / step);
+    const bool same = begun && *begun == bin && std::isfinite(series.y[i]);
+    begun = std::isfinite(series.y[i]) ? std::optional(bin) : std::nullopt;
+    if (!same) {
+      x.push_back(series.x[i]);
+      y.push_back(series.y[i]);
+    } else if (series.y[i] > y.back()) {
+      x.back() = series.x[i];
+      y.back() = series.y[i];
+    }
+  }
+  series.x = std::move(x);
+  series.y = std::move(y);
+  return series;
+}
+
 Panel sigma_panel(const RunData& data, const Triad& triad, const std::string& label,
                   const std::string& unit, const Names& axes) {
   const DecimatedTable::Rows rows = triad.rows.rows();
+  const SigmaStep step = sigma_step(rows.x);
   Panel panel = time_panel(data, {label, unit});
   panel.y.kind = AxisKind::log;
   panel.legend = LegendPlace::panel;
   for (size_t i = 0; i < 3; ++i) {
     panel.series.push_back(line(axes[i], kTriadInks[i], rows.x, rows.columns[i + 3]));
+    if (step.thins) panel.series.back() = largest_of_steps(panel.series.back(), step.seconds);
     panel.series.back().column = label + " sigma " + axes[i];
     panel.series.back().dash = kTriadDashes[i];
   }
@@ -416,6 +465,11 @@ Figure uncertainty_figure(const RunData& data, const std::string& subtitle) {
           (data.is_smoothed() ? "They are largest in the middle of a stretch without GNSS, for "
                                 "fixes before and after it count."
                               : "They grow without GNSS and fall with the first fixes after."));
+  const SigmaStep step = sigma_step(data.position.rows.rows().x);
+  if (step.thins) {
+    figure.caption +=
+        fmt::format(" The largest of every {} s is drawn.", significant_text(step.seconds, 2));
+  }
   figure.height_mm = 200;
   figure.panels = {
       sigma_panel(data, data.position, "Position", "m", kNed),

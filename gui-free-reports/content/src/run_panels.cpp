@@ -147,6 +147,17 @@ void tell_hidden_bounds(const std::vector<double>& sigma, bool cut, Panel& panel
   if (largest_finite(finite) < seen) panel.series.front().in_legend = false;
 }
 
+std::optional<double> positive_quantile(std::vector<double> values, double share) {
+  values.erase(std::remove_if(values.begin(), values.end(),
+                              [](double value) { return !std::isfinite(value) || value <= 0; }),
+               values.end());
+  if (values.empty()) return std::nullopt;
+  const auto at =
+      values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
 double largest_finite(const std::vector<double>& values) {
   double largest = 0;
   for (const double value : values) {

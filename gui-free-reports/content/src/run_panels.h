@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -56,6 +57,9 @@ void add_bounds(const Band& band, const std::string& label, const std::vector<do
 
 /// Zero if there is none above it.
 double largest_finite(const std::vector<double>& values);
+
+/// The value that a share of the finite positive ones is below.
+std::optional<double> positive_quantile(std::vector<double> values, double share);
 
 /// ", from 60 s on", if anything is left out.
 std::string since(double statistics_from);

@@ -14,6 +14,12 @@ namespace {
 
 constexpr Band kBand{0.0506, 7.378};  // of chi-square with two degrees
 
+state::Epoch epoch_at(int i) {
+  state::Epoch epoch = state::with_slow_blocks({}, {});
+  epoch.t_ns = nanoseconds(i);
+  return epoch;
+}
+
 ReportPage page_of(const state::Told& told, bool with_aids) {
   RunReport report(kLabels, state::Mounting{}, told);
   for (int i = 0; i < 100; ++i) {
@@ -41,6 +47,18 @@ TEST(AidsSection, UsedAndRejectedOverTheDimension) {
   EXPECT_DOUBLE_EQ(series_of(panel, "95 % for one measurement").y[0], kBand.low / 2);
   EXPECT_EQ(section_of(page, "Aids").tables.at(0).rows.at(0),
             (std::vector<std::string>{"Nonholonomic", "90", "10", "2", "0.750"}));
+}
+
+/// Where all are far below their bounds, too: a panel of arrowheads tells nothing.
+TEST(AidsSection, TheAxisShowsWhatThereIs) {
+  RunReport report(kLabels, state::Mounting{});
+  for (int i = 0; i < 100; ++i) {
+    report.epoch(epoch_at(i));
+    report.observation({nanoseconds(i), "zero_velocity", 3, 0.003, true});
+  }
+  report.aid({"zero_velocity", 3, 100, 0, 0.003, {0.216, 9.35}});
+  const Panel panel = figure_of(report.page(), "aid_innovations").panels.at(0);
+  EXPECT_LE(*panel.y.min, 0.001);
 }
 
 TEST(AidsSection, VelocityIsAlongTheEstimatedAxes) {

@@ -145,6 +145,49 @@ TEST(RunReport, HeadingIsTheVehiclesAndIsBrokenAtNorth) {
   EXPECT_NEAR(series_of(figure.panels[0], "estimate").y[50], 0.1 * 180 / M_PI, 1e-9);
 }
 
+/// A roll that passes half a turn is drawn over a whole one; one that does not, as large as it is.
+TEST(RunReport, RollHasTheAxisItNeeds) {
+  const auto roll_axis = [](double turns) {
+    RunReport report(kLabels, state::Mounting{});
+    for (int i = 0; i < 200; ++i) {
+      state::Epoch epoch;
+      epoch.t_ns = nanoseconds(0.1 * i);
+      epoch.q_n_b = so3::from_euler({2 * M_PI * turns * std::sin(0.1 * i), 0, 1});
+      report.epoch(epoch);
+    }
+    return figure_of(report.page(), "attitude").panels.at(0).y;
+  };
+  const Axis rolling = roll_axis(0.6);
+  EXPECT_EQ(rolling.kind, AxisKind::bearing);
+  EXPECT_EQ(*rolling.min, -180);
+  EXPECT_EQ(*rolling.max, 180);
+  const Axis leaning = roll_axis(0.1);
+  EXPECT_EQ(leaning.kind, AxisKind::linear);
+  EXPECT_FALSE(leaning.max);
+}
+
+/// Sigmas that jump from epoch to epoch, as between standstills, are not a block of ink.
+TEST(RunReport, OfSigmasThatJumpTheLargestOfASecondIsDrawn) {
+  const auto drawn = [](double step) {
+    RunReport report(kLabels, state::Mounting{});
+    for (int i = 0; i < 100; ++i) {
+      state::Epoch epoch;
+      epoch.t_ns = nanoseconds(step * i);
+      epoch.covariance.diagonal().setConstant(i % 5 == 0 ? 4e-4 : 0.04);
+      report.epoch(epoch);
+    }
+    const Figure figure = figure_of(report.page(), "uncertainty");
+    const bool says = figure.caption.find("largest of every 1.0 s") != std::string::npos;
+    return std::pair(figure.panels.at(1).series.at(0).y, says);
+  };
+  const auto [close, says_of_close] = drawn(0.2);
+  EXPECT_EQ(close, std::vector<double>(20, 0.2));
+  EXPECT_TRUE(says_of_close);
+  const auto [apart, says_of_apart] = drawn(1);
+  EXPECT_EQ(apart.size(), 100u);
+  EXPECT_FALSE(says_of_apart);
+}
+
 TEST(RunReport, BiasesHaveUnitsOfDataSheets) {
   RunReport report(kLabels, state::Mounting{});
   state::Epoch epoch;

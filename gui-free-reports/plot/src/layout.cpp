@@ -87,7 +87,7 @@ class LayoutMaker {
   std::vector<std::string> note_lines(const Panel& panel) {
     if (panel.title.empty() && panel.note.empty()) return {};
     constexpr const char* kBetween = " · ";
-    const double width = column_width() - millimetres(17);  // about that of the plot
+    const double width = column_width() - millimetres(23);  // of the plot, beside long tick labels
     const double title = typesetter_.width(panel.title, style::kAxisPoints, true);
     std::vector<std::string> lines{""};
     for (const std::string& part : parted(panel.note, kBetween)) {

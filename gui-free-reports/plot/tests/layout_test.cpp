@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "style.h"
+
 namespace foucault::plot {
 namespace {
 
@@ -56,6 +58,25 @@ TEST_F(LaidOut, NotesThatDoNotFitBesideTheTitleGoOnBelow) {
   EXPECT_EQ(narrow.notes,
             (std::vector<std::string>{"mean 0.48", "1470 used, 0 rejected · from 60 s on"}));
   EXPECT_GT(narrow.plot.y, top);
+}
+
+/// Long labels of ticks make the plot narrower, and with it what is above it.
+TEST_F(LaidOut, TitleAndNoteDoNotOverlapAboveANarrowPlot) {
+  Figure figure = figure_of(3, 3);
+  for (Panel& panel : figure.panels) {
+    panel.y = {"ppm of the wheels", ""};
+    panel.series[0].y = {-1.4912, -1.4673};
+    panel.title = "Wheel scale";
+  }
+  for (const char* note : {"−1.4767 ± 0.0024 %", "−1.48 ± 0.24 %", "−1.476 ± 0.002 %"}) {
+    for (Panel& panel : figure.panels) panel.note = note;
+    for (const PlacedPanel& placed : lay_out(figure, typesetter_).panels) {
+      if (placed.notes.size() > 1) continue;  // one below the other
+      const double taken = typesetter_.width("Wheel scale", style::kAxisPoints, true) +
+                           typesetter_.width(note, style::kNotePoints);
+      EXPECT_LT(taken, placed.plot.width) << note;
+    }
+  }
 }
 
 TEST_F(LaidOut, OnlyTheLowestPanelsOfASharedAxisHaveLabels) {

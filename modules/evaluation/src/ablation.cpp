@@ -16,6 +16,11 @@ const MethodOutages* outages_of(const std::vector<MethodOutages>& outages,
   return found == outages.end() ? nullptr : &*found;
 }
 
+/// To the last bit: what is off was never used, as the wheels' speed of a vehicle without.
+bool drifts_alike(const MethodOutages& a, const MethodOutages& b) {
+  return a.horizontal_max() == b.horizontal_max() && a.vertical_max() == b.vertical_max();
+}
+
 std::string percentage(const std::optional<Estimate>& relative) {
   return relative ? fmt::format("{:+.1f}", 100 * relative->value) : "";
 }
@@ -41,6 +46,7 @@ std::vector<AblationRow> ablation_rows(const std::vector<MethodOutages>& outages
     AblationRow row{what, root_mean_square(horizontal), root_mean_square(vertical), {}, {}};
     const MethodOutages* whole = outages_of(outages, what.method);
     if (whole && !what.without.empty()) {
+      if (drifts_alike(*whole, *of)) continue;
       row.horizontal_relative = compare_paired(whole->horizontal_max(), horizontal).relative;
       row.vertical_relative = compare_paired(whole->vertical_max(), vertical).relative;
     }

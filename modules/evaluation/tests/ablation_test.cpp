@@ -31,6 +31,14 @@ TEST_F(AblationTest, DifferencesAreFromTheSameMethodAsItIs) {
                                          "[+100.0, +100.0]", "+100.0"));
 }
 
+TEST_F(AblationTest, WhatNoRecordingUsesHasNoRow) {
+  outages_.push_back(outages("ekf without zero_velocity", 1));
+  const std::vector<AblationRow> rows =
+      ablation_rows(outages_, {{"ekf", ""}, {"ekf", "wheel_speed"}, {"ekf", "zero_velocity"}});
+  ASSERT_EQ(rows.size(), 2u);
+  EXPECT_EQ(rows[1].what.without, "wheel_speed");
+}
+
 TEST_F(AblationTest, NoDifferenceFromAMethodThatFailed) {
   outages_.erase(outages_.begin());
   const std::vector<AblationRow> rows =

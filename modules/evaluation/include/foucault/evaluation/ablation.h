@@ -28,7 +28,8 @@ struct AblationRow {
   std::optional<Estimate> horizontal_relative, vertical_relative;
 };
 
-/// In the order of `cases`; `outages` are of one group. Cases that failed are left out.
+/// In the order of `cases`; `outages` are of one group. Cases that failed are left out, and parts
+/// that no recording has a use for: without them every outage is the same.
 std::vector<AblationRow> ablation_rows(const std::vector<MethodOutages>& outages,
                                        const std::vector<AblationCase>& cases);
 
