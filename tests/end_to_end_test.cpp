@@ -398,6 +398,23 @@ TEST(Allan, NamesWhatShakesInMotion) {
               0.1);
 }
 
+/// Ten minutes of rest, and only these, have an Allan deviation beside what was learned.
+TEST(Learn, ShowsTheAllanDeviationOfALongRest) {
+  const TestFolder folder;
+  for (const char* rest : {"60", "680"}) {
+    const std::string log = folder / (std::string(rest) + ".rawlog");
+    const std::string out = folder / (std::string(rest) + "-noise");
+    ASSERT_EQ(foucault({"simulate", "--duration", "840", "--set", "scenario.imu_rate_hz=50",
+                        "--set", std::string("scenario.rest_s=") + rest, "--out", log})
+                  .exit_code,
+              0);
+    const Outcome outcome = foucault({"learn", log, "--out", out});
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    const std::string page = folder.text(std::string(rest) + "-noise/report/index.html");
+    EXPECT_EQ(page.find("allan_gyroscope") != std::string::npos, std::string(rest) == "680");
+  }
+}
+
 TEST_F(Trip, ANoiseThatNobodyToldIsLearnedAndKept) {
   const Outcome outcome = foucault({"run", log_, "--method", "ekf", "--set", "imu.preset=auto",
                                     "--no-report", "--out", folder_ / "auto"});

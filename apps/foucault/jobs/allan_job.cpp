@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <optional>
 
 #include "foucault/core/constants.h"
 #include "foucault/core/error.h"
@@ -34,8 +35,9 @@ struct FoundRests {
   double interval_s = 0;  ///< of samples, the mean
 };
 
+constexpr double kShortestRest = 10;  // [s]
+
 FoundRests rests_of(const AllanJob& job, Console& console) {
-  constexpr double kShortest = 10;  // [s]
   rawlog::RawlogSource source = samples_of(job);
   diagnosis::RestWatch watch;
   double length = 0, count = 0;
@@ -50,14 +52,8 @@ FoundRests rests_of(const AllanJob& job, Console& console) {
   }
   FoundRests found{{}, length / count};
   for (const diagnosis::Rest& rest : watch.rests()) {
-    if (seconds_between(rest.begin_ns, rest.end_ns) >= kShortest) found.rests.push_back(rest);
+    if (seconds_between(rest.begin_ns, rest.end_ns) >= kShortestRest) found.rests.push_back(rest);
   }
-  if (found.rests.empty())
-    throw DataError(fmt::format(
-        "'{}': nowhere at rest for {:.0f} s as its fixes and its IMU show, and the Allan deviation "
-        "is one of rest; record the IMU standing still (minutes for white noise, hours for the "
-        "bias), or use `foucault learn`",
-        job.log, kShortest));
   return found;
 }
 
@@ -249,11 +245,7 @@ std::string lines_text(const std::vector<calibration::SpectralLine>& lines) {
   return text;
 }
 
-}  // namespace
-
-AllanResult allan(const AllanJob& job, Console& console) {
-  OutputDirectory out(job.out);
-  const FoundRests found = rests_of(job, console);
+AllanResult measured(const AllanJob& job, const FoundRests& found, Console& console) {
   AllanResult result;
   result.log = std::filesystem::path(job.log).filename().string();
   result.out = job.out;
@@ -271,7 +263,30 @@ AllanResult allan(const AllanJob& job, Console& console) {
   if (source.damage()) console.warn(*source.damage());
   collector.give(result);
   for (int i = 0; i < 2; ++i) result.sensors[static_cast<std::size_t>(i)] = sensor_of(result, i);
+  return result;
+}
 
+}  // namespace
+
+std::optional<AllanResult> allan_of_rest(const AllanJob& job, double least_s, Console& console) {
+  const FoundRests found = rests_of(job, console);
+  double seconds = 0;
+  for (const diagnosis::Rest& rest : found.rests)
+    seconds += seconds_between(rest.begin_ns, rest.end_ns);
+  if (seconds < least_s) return std::nullopt;
+  return measured(job, found, console);
+}
+
+AllanResult allan(const AllanJob& job, Console& console) {
+  OutputDirectory out(job.out);
+  const FoundRests found = rests_of(job, console);
+  if (found.rests.empty())
+    throw DataError(fmt::format(
+        "'{}': nowhere at rest for {:.0f} s as its fixes and its IMU show, and the Allan deviation "
+        "is one of rest; record the IMU standing still (minutes for white noise, hours for the "
+        "bias), or use `foucault learn`",
+        job.log, kShortestRest));
+  AllanResult result = measured(job, found, console);
   exports::write_text_file(out.staging() / "allan.csv", allan_csv(result));
   exports::write_text_file(out.staging() / "metrics.json", allan_json(result));
   if (job.report) page::write_report(allan_page(result), (out.staging() / "report").string());

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -57,6 +58,9 @@ struct AllanResult {
 /// Writes allan.csv, metrics.json and report/.
 /// Throws DataError if the log cannot be read or never rests for ten seconds.
 AllanResult allan(const AllanJob& job, Console& console);
+
+/// The same without files, of a log that rests for `least_s` in all; none of one that does not.
+std::optional<AllanResult> allan_of_rest(const AllanJob& job, double least_s, Console& console);
 
 std::vector<std::string> summary_lines(const AllanResult& result);
 

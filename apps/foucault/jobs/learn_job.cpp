@@ -128,6 +128,19 @@ std::string learn_json(const LearnResult& result) {
   return json.dump(2) + "\n";
 }
 
+/// For the page: what is learned while driving beside what the IMU does at rest.
+std::optional<AllanResult> longest_rest(const LearnJob& job, Console& console) {
+  constexpr double kLongEnough = 600;  // [s]
+  std::optional<AllanResult> longest;
+  for (const std::string& log : job.logs) {
+    std::optional<AllanResult> of_log =
+        allan_of_rest({log, job.settings, job.out, true, job.command_line}, kLongEnough, console);
+    if (!of_log) continue;
+    if (!longest || of_log->curve.length_s() > longest->curve.length_s()) longest = of_log;
+  }
+  return longest;
+}
+
 }  // namespace
 
 LearnResult learn(const LearnJob& job, Console& console) {
@@ -167,6 +180,7 @@ LearnResult learn(const LearnJob& job, Console& console) {
   result.config = dump_config(with);
   exports::write_text_file(out.staging() / "learned.yaml", result.config);
   exports::write_text_file(out.staging() / "metrics.json", learn_json(result));
+  if (job.report) result.rest = longest_rest(job, console);
   if (job.report) page::write_report(learn_page(result), (out.staging() / "report").string());
   if (!job.report) out.withdraw("report");
   out.commit();

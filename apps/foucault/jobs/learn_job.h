@@ -5,6 +5,7 @@
 
 #include "console.h"
 #include "foucault/calibration/learn.h"
+#include "jobs/allan_job.h"
 #include "settings.h"
 
 namespace foucault::app {
@@ -36,6 +37,7 @@ struct LearnResult {
   std::optional<calibration::LastingErrors> lasting;
   std::vector<calibration::NormalizedError> before, after;
   int passes = 0;
+  std::optional<AllanResult> rest;  ///< of the log that rests longest, ten minutes and more
   std::string out, command_line, config;
 };
 

@@ -297,6 +297,10 @@ std::string markov_text(const AllanResult& result) {
 
 }  // namespace
 
+std::vector<plot::Figure> allan_figures(const AllanResult& result) {
+  return {allan_figure(result, 0), allan_figure(result, 1)};
+}
+
 page::ReportPage allan_page(const AllanResult& result) {
   page::ReportPage page;
   page.title = "Noise at rest";

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "pages/allan_page.h"
 #include "version.h"
 
 namespace foucault::app {
@@ -142,6 +143,15 @@ page::ReportPage learn_page(const LearnResult& result) {
       {"Noise", {lasting_text(result)}, {values_table(result)}, {values_figure(result)}},
       {"How sure", {}, {}, {profile_figure(result)}},
       {"Predictions", {}, {}, {horizons_figure(result)}}};
+  if (result.rest) {
+    page.sections.push_back(
+        {"At rest",
+         {fmt::format("{} rests for {:.0f} s in all. White noise that is lower here than what was "
+                      "learned is what driving adds: vibration, and what is not modelled.",
+                      result.rest->log, result.rest->curve.length_s())},
+         {},
+         allan_figures(*result.rest)});
+  }
   page.listings = {{"Configuration", result.config}, {"Command", result.command_line}};
   page.footer = fmt::format("foucault {}", kVersion);
   return page;
