@@ -68,6 +68,12 @@ TEST(EmbedEkf, IsWhereTheTruthIs) {
   EXPECT_LT(squares / static_cast<double>(solution.size()), 1.33);
 }
 
+TEST(EmbedEkf, SaysInOneLineThatItsTablesAreMissing) {
+  const TestFolder folder;
+  shell(folder, "! " + example("embed_ekf") + " 2> said");
+  EXPECT_EQ(folder.text("said"), "no imu.csv or gnss.csv\n");
+}
+
 TEST(EmbedEkf, NeedsFewLibrariesAndNoneOfMrptAndOpencv) {
   const TestFolder folder;
   shell(folder, "ldd " + example("embed_ekf") + " > libraries");
