@@ -160,8 +160,9 @@ TEST(RunPage, ALeverArmThatTheRecordingHardlyTellsSaysSo) {
   RunResult result;
   result.calibration = {{state::block::lever_arm, {0.1, -0.3, -0.8}, {0.002, 0.034, 0.036}}};
   result.told = {{state::block::lever_arm, {0.1, -0.3, -0.8}, {0.05, 0.05, 0.05}}};
+  const std::vector<page::Table> tables = metrics_tables(result);
   std::string arm;
-  for (const std::vector<std::string>& row : metrics_tables(result)[0].rows) {
+  for (const std::vector<std::string>& row : tables.at(0).rows) {
     if (row[0] == "Lever arm, IMU to antenna") arm = row[1];
   }
   EXPECT_EQ(arm,
