@@ -110,6 +110,7 @@ bool leaves_open(const Settings& settings) {
   if (c.mode == "none") return false;
   const bool wheels = aids.uses(aids.nonholonomic) || aids.uses(aids.wheel_speed);
   return c.time_offset != "off" || c.noise != "off" ||
+         (aids.uses(aids.heading) && c.baseline_heading == "auto") ||
          (wheels && (c.mounting == "auto" || c.wheel_scale == "auto" ||
                      c.wheel_lever_arm == "auto" || c.cornering_compliance == "auto"));
 }
@@ -207,7 +208,7 @@ Survey Surveyor::survey(const std::string& log, Settings settings) {
   int questions = untold ? 2 : settings.calibrate.noise == "off" ? 0 : 1;
   Survey found;
   found.time_offset_s = settings.calibrate.time_offset_s;
-  settings.calibrate = settings.calibrate.resolved({true, true});
+  settings.calibrate = settings.calibrate.resolved({true, true, true});
   for (int pass = 0; pass < kMostPasses; ++pass) {
     const std::optional<Watcher> watcher = look_through(log, settings, questions > 0, console_);
     if (!watcher) break;
@@ -215,7 +216,8 @@ Survey Surveyor::survey(const std::string& log, Settings settings) {
         state::as_users_know(*watcher->last, watcher->told), watcher->told.layout);
     found.told = evaluation::calibrated_blocks(state::prior_as_users_know(watcher->told),
                                                watcher->told.layout);
-    found.carried = {uses(*watcher, "nonholonomic"), uses(*watcher, "wheel_speed")};
+    found.carried = {uses(*watcher, "nonholonomic"), uses(*watcher, "wheel_speed"),
+                     uses(*watcher, "heading")};
     const std::optional<double> rest = rest_of_offset(*watcher, settings.calibrate.layout());
     const bool moves = rest && std::abs(found.time_offset_s + *rest) < kMost;
     const bool learns = questions > 0 && !watcher->way.empty() && (pass > 0 || !moves);
