@@ -106,7 +106,8 @@ TEST_F(Evaluate, TellsWhatPartsOfTheConfigurationAreWorth) {
   const Outcome outcome =
       evaluate("out", {"--ablate", "--methods", "ekf", "--set", "aids.nonholonomic=on", "--set",
                        "aids.gnss_velocity=off", "--set", "aids.zero_velocity=off", "--set",
-                       "aids.wheel_speed=off", "--set", "calibrate.mounting=on"});
+                       "aids.wheel_speed=off", "--set", "aids.heading=off", "--set",
+                       "calibrate.mounting=on"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const std::vector<std::string> parts{"", "nonholonomic", "aids", "calibration",
                                        "aids and calibration"};

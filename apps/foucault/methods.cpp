@@ -20,6 +20,8 @@ methods::MethodOptions method_options(const Settings& settings, const state::Mou
   run.aids = settings.aids;
   run.layout = settings.calibrate.layout();
   if (!run.layout.find(state::block::mounting)) without_wheels(run.aids);
+  if (!run.layout.find(state::block::baseline_heading) && run.aids.heading == "auto")
+    run.aids.heading = "off";  // nobody mounts antennas to the tenth of a degree
   run.node_interval_s = settings.fgo.node_interval_s;
   run.rate = settings.output.epoch_rate();
   run.imu = settings.imu.noise();

@@ -21,7 +21,9 @@ navigation::EpochRate OutputOptions::epoch_rate() const {
   return rate == "imu" ? navigation::EpochRate::imu : navigation::EpochRate::epochs;
 }
 
-Settings::Settings() { aids.zero_velocity = aids.nonholonomic = aids.wheel_speed = "auto"; }
+Settings::Settings() {
+  aids.zero_velocity = aids.nonholonomic = aids.wheel_speed = aids.heading = "auto";
+}
 
 Settings Settings::of_paper() {
   Settings settings;

@@ -572,12 +572,42 @@ class GnssVelocity {
   std::optional<Eigen::Vector3d> sigma_;  ///< where no column tells
 };
 
+/// Heading of two antennas of a row with its sigma.
+class HeadingColumns {
+ public:
+  HeadingColumns(const GnssMapping& mapping, const Columns& columns)
+      : column_(columns.find("heading")),
+        sigma_column_(columns.find("sigma_heading")),
+        to_radians_(mapping.heading_unit == "rad" ? 1 : kDegree) {
+    if (mapping.heading_sigma_deg) sigma_ = *mapping.heading_sigma_deg * kDegree;
+    if (!column_ || sigma_column_ || sigma_) return;
+    throw UsageError(
+        "gnss: the heading's sigma is missing; name a column sigma_heading, or give "
+        "heading_sigma_deg");
+  }
+
+  /// A row may have none.
+  void add_to(GnssFix& fix, const Row& row) const {
+    if (!column_ || row.is_blank(*column_)) return;
+    const std::optional<double> told =
+        sigma_column_ ? told_sigma(row, *sigma_column_) : std::nullopt;
+    if (!told && !sigma_) return;
+    fix.heading = GnssHeading{so3::wrap(row.number(*column_) * to_radians_),
+                              told ? *told * to_radians_ : *sigma_};
+  }
+
+ private:
+  std::optional<size_t> column_, sigma_column_;
+  double to_radians_;
+  std::optional<double> sigma_;  ///< where no column tells [rad]
+};
+
 Roles gnss_roles() {
   return joined({position_roles(),
                  velocity_roles(),
                  {"speed", "bearing", "sigma_velocity", "sigma_north", "sigma_east", "sigma_down",
-                  "sigma_horizontal", "sigma_vertical", "sigma_x", "sigma_y", "sigma_z", "quality",
-                  "satellites", "hdop", "correction_age"}});
+                  "sigma_horizontal", "sigma_vertical", "heading", "sigma_heading", "sigma_x",
+                  "sigma_y", "sigma_z", "quality", "satellites", "hdop", "correction_age"}});
 }
 
 class GnssReader : public RecordReader {
@@ -591,6 +621,7 @@ class GnssReader : public RecordReader {
         position_(mapping, columns_, path),
         sigma_(mapping, columns_),
         velocity_(mapping, columns_),
+        heading_(mapping, columns_),
         quality_(mapping, columns_),
         details_{columns_.find("satellites"), columns_.find("hdop"),
                  columns_.find("correction_age")} {}
@@ -617,6 +648,7 @@ class GnssReader : public RecordReader {
     fix.antenna = position_.position(row);
     fix.position_covariance = sigma_.covariance(row, fix.antenna);
     velocity_.add_to(fix, row);
+    heading_.add_to(fix, row);
     fix.details = details(row);
     fix.t_ns = time_.stamp(row);
     order_.check(row, fix.t_ns);
@@ -645,6 +677,7 @@ class GnssReader : public RecordReader {
   PositionColumns position_;
   SigmaColumns sigma_;
   GnssVelocity velocity_;
+  HeadingColumns heading_;
   QualityColumn quality_;
   std::array<std::optional<size_t>, 3> details_;  ///< satellites, HDOP, age of corrections
   StampOrder order_;

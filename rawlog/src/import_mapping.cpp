@@ -171,6 +171,10 @@ void GnssMapping::fields(ConfigFields& f) {
   f.flag("velocity", velocity, "read the velocity columns");
   f.numbers("velocity_sigma_m_s", velocity_sigma_m_s, kPositive,
             "north, east, down, where no column tells, or a cell of it is blank or zero [m/s]");
+  f.text("heading_unit", heading_unit, {"deg", "rad"},
+         "unit of the heading of two antennas and its sigma");
+  f.optional_number("heading_sigma_deg", heading_sigma_deg, kPositive,
+                    "where no column tells, or a cell of it is blank or zero; NMEA: 0.5");
   f.text("quality", quality, {"unknown", "single", "differential", "ppp", "float_rtk", "fixed_rtk"},
          "of all fixes, where no column tells");
   f.text_map("quality_table", quality_table, "value in the column: quality, or none");

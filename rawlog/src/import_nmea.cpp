@@ -9,6 +9,7 @@
 #include "csv_readers.h"
 #include "foucault/core/error.h"
 #include "foucault/core/fix_quality.h"
+#include "foucault/core/so3.h"
 #include "foucault/core/time.h"
 #include "nmea_accuracy.h"
 #include "nmea_reader.h"
@@ -81,10 +82,11 @@ class NmeaReader : public RecordReader {
           "gnss.velocity_sigma_m_s: [north, east, down]",
           table().path(), kGroundSpeedSigma));
     }
-    if (epochs_.headings() > 0) {
+    if (heading_assumed_) {
       found.push_back(
-          fmt::format("{}: {} headings (THS, HDT) left out, logs have no place for them",
-                      table().path(), epochs_.headings()));
+          fmt::format("{}: headings with an assumed sigma of {} deg; if known, give "
+                      "gnss.heading_sigma_deg",
+                      table().path(), kHeadingSigma / kDegree));
     }
     return found;
   }
@@ -123,6 +125,7 @@ class NmeaReader : public RecordReader {
     }
     fix.position_covariance = sigma(epoch, position).cwiseAbs2().asDiagonal();
     if (epoch.velocity && mapping_.velocity) add_velocity(fix, *epoch.velocity);
+    if (epoch.heading) fix.heading = GnssHeading{so3::wrap(*epoch.heading), heading_sigma(epoch)};
     fix.t_ns = checked_stamp(row, near_ns_ + offset_ns_);
     order_.check(row, fix.t_ns);
     return fix;
@@ -169,6 +172,13 @@ class NmeaReader : public RecordReader {
     fix.velocity_covariance = sigma.cwiseAbs2().asDiagonal();
   }
 
+  double heading_sigma(const NmeaEpoch& epoch) {
+    if (epoch.heading_sigma) return *epoch.heading_sigma;
+    if (mapping_.heading_sigma_deg) return *mapping_.heading_sigma_deg * kDegree;
+    heading_assumed_ = true;
+    return kHeadingSigma;
+  }
+
   NmeaEpochs epochs_;
   GnssMapping mapping_;
   int64_t offset_ns_;
@@ -176,7 +186,7 @@ class NmeaReader : public RecordReader {
   int64_t near_ns_;  ///< a stamp within half a day of the next epoch
   StampOrder order_;
   std::set<FixQuality> assumed_;
-  bool velocity_assumed_ = false;
+  bool velocity_assumed_ = false, heading_assumed_ = false;
 };
 
 /// The first epochs of a file with a position, with and without a height.

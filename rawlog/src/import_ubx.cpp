@@ -153,6 +153,7 @@ class UbxGnss : public RecordReader {
                                    position.place.height);
     fix.position_covariance = covariance_of(epoch, position, place);
     if (velocity_) add_velocity(epoch, fix);
+    fix.heading = epoch.heading;
     fix.t_ns = checked_stamp(place, stamp_ns + offset_ns_);
     order_.check(place, fix.t_ns);
     if (epoch.status && epoch.status->kind == UbxStatus::Kind::fused) ++fused_;

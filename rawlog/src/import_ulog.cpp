@@ -13,8 +13,10 @@
 #include "boot_clock.h"
 #include "foucault/core/constants.h"
 #include "foucault/core/error.h"
+#include "foucault/core/so3.h"
 #include "foucault/core/time.h"
 #include "import_run.h"
+#include "nmea_accuracy.h"
 #include "ulog_file.h"
 
 namespace foucault::rawlog {
@@ -118,6 +120,7 @@ struct GnssFields {
   UlogField time, fix_type;
   Quantity latitude, longitude, msl, eph, epv;
   std::optional<Quantity> ellipsoidal, utc, time_relative, velocity_sigma, velocity_valid;
+  std::optional<Quantity> heading, heading_sigma;
   std::array<std::optional<Quantity>, 3> velocity;
 
   static std::optional<GnssFields> of(const UlogFields& fields);
@@ -148,6 +151,8 @@ std::optional<GnssFields> GnssFields::of(const UlogFields& fields) {
   found.time_relative = quantity(fields, {{"timestamp_time_relative", 1}});
   found.velocity_sigma = quantity(fields, {{"s_variance_m_s", 1}});
   found.velocity_valid = quantity(fields, {{"vel_ned_valid", 1}});
+  found.heading = quantity(fields, {{"heading", 1}});
+  found.heading_sigma = quantity(fields, {{"heading_accuracy", 1}});
   found.velocity = {quantity(fields, {{"vel_n_m_s", 1}}), quantity(fields, {{"vel_e_m_s", 1}}),
                     quantity(fields, {{"vel_d_m_s", 1}})};
   return found;
@@ -415,6 +420,7 @@ class UlogGnss : public UlogReader {
     const Eigen::Vector3d sigmas(horizontal, horizontal, sigma(fields.epv, message));
     fix.position_covariance = sigmas.cwiseAbs2().asDiagonal();
     add_velocity(fields, message, fix);
+    add_heading(fields, message, fix);
     FixTime time = time_of(fields, message);
     const bool repeated = time.utc_us == last_utc_us_;  // a receiver that does not count on
     last_utc_us_ = time.utc_us;
@@ -447,6 +453,15 @@ class UlogGnss : public UlogReader {
     if (!std::isfinite(sigma) || sigma <= 0) return;
     fix.velocity_n = Eigen::Vector3d(north->of(message), east->of(message), down->of(message));
     fix.velocity_covariance = Eigen::Matrix3d::Identity() * sigma * sigma;
+  }
+
+  /// Of the body, already: PX4 takes off GPS_YAW_OFFSET. NaN without two antennas.
+  static void add_heading(const GnssFields& fields, const UlogMessage& message, GnssFix& fix) {
+    if (!fields.heading) return;
+    const double heading = message.number(fields.heading->field);
+    if (!std::isfinite(heading)) return;
+    const double told = fields.heading_sigma ? message.number(fields.heading_sigma->field) : 0;
+    fix.heading = GnssHeading{so3::wrap(heading), told > 0 ? told : kHeadingSigma};
   }
 
   std::optional<GnssFields> fields_;

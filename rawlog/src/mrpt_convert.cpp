@@ -80,6 +80,29 @@ void encode_imu(const imu::ImuSample& sample, mrpt::obs::CObservationIMU& imu) {
   imu.set(IMU_Z_ACC, sample.accel_b.z());
 }
 
+namespace {
+
+constexpr int kYaw = 3;  ///< of x, y, z, yaw, pitch, roll
+
+/// Clockwise from North to counterclockwise from East, and back.
+double turned_azimuth(double angle) { return so3::wrap(0.5 * kPi - angle); }
+
+}  // namespace
+
+std::optional<GnssHeading> decode_heading(const mrpt::obs::CObservationRobotPose& pose) {
+  const double yaw = pose.pose.mean.yaw(), variance = pose.pose.cov(kYaw, kYaw);
+  if (!std::isfinite(yaw) || !std::isfinite(variance) || !(variance > 0)) return std::nullopt;
+  return GnssHeading{turned_azimuth(yaw), std::sqrt(variance)};
+}
+
+void encode_heading(const GnssHeading& heading, mrpt::obs::CObservationRobotPose& pose) {
+  constexpr double kNotKnown = 1e12;
+  pose.pose.mean = mrpt::poses::CPose3D(0, 0, 0, turned_azimuth(heading.azimuth), 0, 0);
+  pose.pose.cov.setZero();
+  for (int i = 0; i < 6; ++i) pose.pose.cov(i, i) = kNotKnown;
+  pose.pose.cov(kYaw, kYaw) = heading.sigma * heading.sigma;
+}
+
 ReferencePose decode_reference(const mrpt::obs::CObservationRobotPose& observation,
                                const Geodetic& origin, int64_t t_ns) {
   const mrpt::poses::CPose3D& mean = observation.pose.mean;

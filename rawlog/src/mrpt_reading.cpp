@@ -66,6 +66,14 @@ bool finite(const imu::ImuSample& sample) {
   return sample.gyro_b.allFinite() && sample.accel_b.allFinite();
 }
 
+/// For a fix that is still to come.
+template <class Part>
+void keep_waiting(int64_t t_ns, const Part& part, std::map<int64_t, Part>& waiting) {
+  constexpr size_t kMost = 100;
+  waiting[t_ns] = part;
+  if (waiting.size() > kMost) waiting.erase(waiting.begin());
+}
+
 /// Reads ahead until the first IMU sample and the first fix.
 class OverviewScan {
  public:
@@ -222,6 +230,9 @@ class MrptReading final : public LogReading {
   void convert(const imu::ImuSample& sample, int64_t stamp_ns);
   void take_gps(const mrpt::obs::CObservationGPS& gps, int64_t t_ns);
   void take_velocity(const mrpt::obs::CObservationGPS& gps, int64_t t_ns);
+  void take_heading(const mrpt::obs::CObservationRobotPose& pose, int64_t t_ns);
+  /// Fixes at a stamp of the log that wait to be given out.
+  std::vector<GnssFix*> fixes_at(int64_t t_ns);
   const rawlog::SensorPose& pose_of(const rawlog::InsRecord& ins);
   void take_reference(const ReferencePose& pose, const rawlog::SensorPose& from,
                       std::string_view type);
@@ -259,6 +270,7 @@ class MrptReading final : public LogReading {
   std::deque<ImuIncrement> increments_;
   std::multimap<int64_t, Measurement> others_;
   std::map<int64_t, rawlog::GroundVelocity> waiting_velocities_;  ///< their fixes are still to come
+  std::map<int64_t, GnssHeading> waiting_headings_;               ///< the same
   std::vector<unsigned char> ins_pose_bytes_;                     ///< of the InsRecord before
   rawlog::SensorPose ins_pose_;
   Eigen::Vector3d reference_arm_v_ = Eigen::Vector3d::Zero();  ///< reference to IMU
@@ -337,6 +349,7 @@ void MrptReading::dispatch(const LoggedObservation& logged, int64_t t_ns) {
     return take_reference(rawlog::decode_reference(*pose, overview_.first_fix, t_ns),
                           rawlog::from_mrpt(pose->sensorPose), logged.type);
   }
+  if (pose != nullptr && pose->sensorLabel == kHeadingLabel) return take_heading(*pose, t_ns);
   if (notes_comment(logged) == nullptr) skip(logged.type);
 }
 
@@ -449,6 +462,11 @@ void MrptReading::take_gps(const mrpt::obs::CObservationGPS& gps, int64_t t_ns) 
     fix->velocity_covariance = waiting->second.covariance;
     waiting_velocities_.erase(waiting);
   }
+  const auto heading = waiting_headings_.find(t_ns);
+  if (heading != waiting_headings_.end()) {
+    fix->heading = heading->second;
+    waiting_headings_.erase(heading);
+  }
   fix->p_b_a = lever_arm_to(rawlog::from_mrpt(gps.sensorPose));
   fix->lever_arm_known =
       lever_arm_told_ == "given" || (lever_arm_told_ == "not_told" && !fix->p_b_a.isZero());
@@ -472,17 +490,32 @@ void MrptReading::take_gps(const mrpt::obs::CObservationGPS& gps, int64_t t_ns) 
 void MrptReading::take_velocity(const mrpt::obs::CObservationGPS& gps, int64_t t_ns) {
   const std::optional<rawlog::GroundVelocity> velocity = rawlog::decode_velocity(gps);
   if (!velocity) return skip(kGps, "no position");
-  const int64_t fix_ns = t_ns - fix_delay_ns_;
-  for (auto it = others_.lower_bound(fix_ns); it != others_.end() && it->first == fix_ns; ++it) {
-    auto* fix = std::get_if<GnssFix>(&it->second);
-    if (fix == nullptr || fix->velocity_n) continue;
+  for (GnssFix* fix : fixes_at(t_ns)) {
+    if (fix->velocity_n) continue;
     fix->velocity_n = velocity->velocity_n;
     fix->velocity_covariance = velocity->covariance;
     return;
   }
-  waiting_velocities_[t_ns] = *velocity;
-  constexpr size_t kMost = 100;
-  if (waiting_velocities_.size() > kMost) waiting_velocities_.erase(waiting_velocities_.begin());
+  keep_waiting(t_ns, *velocity, waiting_velocities_);
+}
+
+void MrptReading::take_heading(const mrpt::obs::CObservationRobotPose& pose, int64_t t_ns) {
+  const std::optional<GnssHeading> heading = rawlog::decode_heading(pose);
+  if (!heading) return skip("CObservationRobotPose", "heading without a sigma");
+  for (GnssFix* fix : fixes_at(t_ns)) {
+    fix->heading = heading;
+    return;
+  }
+  keep_waiting(t_ns, *heading, waiting_headings_);
+}
+
+std::vector<GnssFix*> MrptReading::fixes_at(int64_t t_ns) {
+  std::vector<GnssFix*> fixes;
+  const auto [begin, end] = others_.equal_range(t_ns - fix_delay_ns_);
+  for (auto it = begin; it != end; ++it) {
+    if (auto* fix = std::get_if<GnssFix>(&it->second)) fixes.push_back(fix);
+  }
+  return fixes;
 }
 
 /// It is the same in all records, as a rule.

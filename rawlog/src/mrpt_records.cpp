@@ -177,6 +177,15 @@ Eigen::Matrix<Value, kSide, kSide> read_matrix(RecordCursor& cursor, std::string
   return matrix;
 }
 
+/// The diagonal, then what is above it by rows.
+void read_symmetric(RecordCursor& cursor, mrpt::math::CMatrixDouble66& matrix) {
+  for (int i = 0; i < 6; ++i) matrix(i, i) = cursor.get<double>();
+  for (int row = 0; row < 6; ++row) {
+    for (int column = row + 1; column < 6; ++column)
+      matrix(row, column) = matrix(column, row) = cursor.get<double>();
+  }
+}
+
 mrpt::math::CMatrixFloat44 read_covariance(RecordCursor& cursor) {
   return mrpt::math::CMatrixFloat44(read_matrix<float, 4>(cursor, "mrpt::math::CMatrixF"));
 }
@@ -478,12 +487,11 @@ mrpt::obs::CObservation::Ptr read_odometry(RecordCursor& cursor, int version) {
 }
 
 mrpt::obs::CObservation::Ptr read_robot_pose(RecordCursor& cursor, int version) {
-  constexpr size_t kUpperTriangle = 21;  // of the covariance, which nobody needs
   require_version(version, 0, 1);
   auto pose = std::make_shared<mrpt::obs::CObservationRobotPose>();
   require_version(nested(cursor, "mrpt::poses::CPose3DPDFGaussian"), 1, 1);
   pose->pose.mean = read_pose(cursor);
-  cursor.skip(kUpperTriangle * sizeof(double));
+  read_symmetric(cursor, pose->pose.cov);
   end_of_object(cursor);
   pose->sensorLabel = cursor.text(kLongestLabel);
   pose->timestamp = read_stamp(cursor);

@@ -49,6 +49,7 @@ class MrptWriting final : public LogWriting {
     imu_.sensorPose = rawlog::to_mrpt({mounting.q_v_b, Eigen::Vector3d::Zero()});
     gnss_.sensorLabel = "GNSS";
     reference_.sensorLabel = "REFERENCE";
+    heading_.sensorLabel = kHeadingLabel;
     odometry_.sensorLabel = "ODOMETRY";
     odometry_.hasVelocities = true;
   }
@@ -79,12 +80,18 @@ class MrptWriting final : public LogWriting {
     require(is_finite(fix.antenna) && fix.position_covariance.allFinite() &&
                 (!fix.velocity_n ||
                  (fix.velocity_n->allFinite() && fix.velocity_covariance.allFinite())) &&
+                (!fix.heading || std::isfinite(fix.heading->azimuth + fix.heading->sigma)) &&
                 fix.p_b_a.allFinite(),
             "the GNSS fix", fix.t_ns);
     if (!lever_arm_ || *lever_arm_ != fix.p_b_a) set_lever_arm(fix.p_b_a);
     gnss_.timestamp = rawlog::to_mrpt(fix.t_ns);
     gnss_.originalReceivedTimestamp = gnss_.timestamp;
     rawlog::encode_fix(fix, gnss_);
+    if (fix.heading) {
+      heading_.timestamp = gnss_.timestamp;
+      rawlog::encode_heading(*fix.heading, heading_);
+      put(heading_);
+    }
     put(gnss_);
   }
 
@@ -140,6 +147,7 @@ class MrptWriting final : public LogWriting {
   mrpt::obs::CObservationIMU imu_;
   mrpt::obs::CObservationGPS gnss_;
   mrpt::obs::CObservationGPS reference_;
+  mrpt::obs::CObservationRobotPose heading_;
   mrpt::obs::CObservationOdometry odometry_;
   std::optional<mrpt::obs::CObservationComment> notes_;  ///< still to be written
   std::optional<Eigen::Vector3d> lever_arm_;

@@ -25,4 +25,7 @@ inline constexpr double kKnot = 1852.0 / kSecondsPerHour;  ///< [m/s]
 inline constexpr double kGroundSpeedSigma = 0.2;
 inline constexpr double kOpenVerticalSigma = 10;
 
+/// Of a heading of two antennas: an arm of a metre, and a centimetre.
+inline constexpr double kHeadingSigma = 0.5 * kDegree;
+
 }  // namespace foucault::rawlog

@@ -17,7 +17,7 @@ namespace {
 
 constexpr size_t kAddress = 5;  ///< two letters of the talker (GP, GN, GL ...), three of the type
 
-constexpr std::string_view kUblox = "PUBX";
+constexpr std::string_view kUblox = "PUBX", kAshtech = "PASHR";
 
 /// '$' and five capital letters or u-blox's own address, else it is of no use here.
 bool has_address(std::string_view sentence) {
@@ -140,6 +140,17 @@ std::optional<Eigen::Vector3d> sigma(const Row& row) {
   return found;
 }
 
+/// Zero: not told.
+std::optional<double> positive(const Row& row, size_t field) {
+  const std::optional<double> value = optional_number(row, field);
+  return value && *value > 0 ? value : std::nullopt;
+}
+
+std::optional<int> count(const Row& row, size_t field) {
+  const std::optional<double> value = positive(row, field);
+  return value && *value < 256 ? std::optional<int>(static_cast<int>(*value)) : std::nullopt;
+}
+
 bool is_valid(const Row& row, size_t mode) { return is_blank(row, mode) || row.text(mode) != "N"; }
 
 }  // namespace
@@ -216,6 +227,7 @@ void NmeaEpochs::finish() {
 
 void NmeaEpochs::take(const Row& row) {
   if (row.text(0) == kUblox) return take_pubx(row);
+  if (row.text(0) == kAshtech) return take_pashr(row);
   if (row.text(0).size() != kAddress) return;
   const std::string_view type = row.text(0).substr(2);
   const bool position = type == "GGA" || type == "GNS";
@@ -227,8 +239,26 @@ void NmeaEpochs::take(const Row& row) {
   } else if (type == "VTG") {
     take_vtg(row);
   } else if (type == "THS" || type == "HDT") {
-    ++headings_;
+    take_heading(row);
   }
+}
+
+/// Of what moves the antennas alone: A in THS. They have no time: they belong to the sentences
+/// before them.
+void NmeaEpochs::take_heading(const Row& row) {
+  const bool ths = row.text(0).substr(2) == "THS";
+  if (!current_ || is_blank(row, 1) || is_blank(row, 2)) return;
+  if (row.text(2) != (ths ? "A" : "T")) return;
+  current_->heading = row.number(1) * kDegree;
+}
+
+/// time, heading, T, roll, pitch, heave, three sigmas, of the heading the last [deg].
+void NmeaEpochs::take_pashr(const Row& row) {
+  if (is_blank(row, 1) || is_blank(row, 2) || is_blank(row, 3) || row.text(3) != "T") return;
+  begin_epoch(sentence_time_ns(row));
+  current_->heading = row.number(2) * kDegree;
+  if (const std::optional<double> sigma = positive(row, 9))
+    current_->heading_sigma = *sigma * kDegree;
 }
 
 void NmeaEpochs::take_zda(const Row& row) {
@@ -256,17 +286,6 @@ void NmeaEpochs::take_timed(std::string_view type, const Row& row) {
   if (type == "GGA" || type == "GNS") return take_position(row, type == "GNS");
   if (type == "RMC") return take_rmc(row);
   current_->sigma = sigma(row);
-}
-
-/// Zero: not told.
-std::optional<double> positive(const Row& row, size_t field) {
-  const std::optional<double> value = optional_number(row, field);
-  return value && *value > 0 ? value : std::nullopt;
-}
-
-std::optional<int> count(const Row& row, size_t field) {
-  const std::optional<double> value = positive(row, field);
-  return value && *value < 256 ? std::optional<int>(static_cast<int>(*value)) : std::nullopt;
 }
 
 void NmeaEpochs::take_position(const Row& row, bool gns) {

@@ -29,7 +29,9 @@ struct NmeaEpoch {
   std::optional<Eigen::Vector3d> sigma;     ///< north, east, down, from GST or PUBX [m]
   std::optional<Eigen::Vector2d> velocity;  ///< north, east [m/s]
   bool velocity_from_rmc = false;
-  std::optional<Row> row;  ///< of the position, for messages only: its fields are gone
+  std::optional<double> heading;        ///< of THS, HDT or PASHR [rad]
+  std::optional<double> heading_sigma;  ///< of PASHR [rad]
+  std::optional<Row> row;               ///< of the position, for messages only: its fields are gone
 };
 
 /// Sentences with a right checksum, cut into fields. What stands between them is left out: stamps
@@ -72,7 +74,6 @@ class NmeaEpochs {
   std::optional<NmeaEpoch> next();
   const NmeaSentences& sentences() const { return sentences_; }
   int64_t without_fix() const { return without_fix_; }
-  int64_t headings() const { return headings_; }
 
  private:
   void take(const Row& row);
@@ -82,6 +83,8 @@ class NmeaEpochs {
   void begin_epoch(int64_t time_of_day_ns);
   void take_zda(const Row& row);
   void take_vtg(const Row& row);
+  void take_heading(const Row& row);
+  void take_pashr(const Row& row);
   void take_date(const Row& row, const std::string& date, const char* format,
                  size_t time_column = 1);
   void take_flat(const Row& row);
@@ -93,7 +96,6 @@ class NmeaEpochs {
   std::optional<NmeaEpoch> finished_;
   std::optional<int64_t> dated_ns_;
   int64_t without_fix_ = 0;
-  int64_t headings_ = 0;
 };
 
 /// The stamp of a time of day that is nearest to `near_ns`.

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "foucault/core/constants.h"
+#include "foucault/core/so3.h"
 #include "foucault/geodesy/wgs84.h"
 #include "import_run.h"
 #include "record_cursor.h"
@@ -152,6 +153,22 @@ void take_cov(RecordCursor& cursor, UbxEpoch& epoch) {
   if (velocity_is_valid) epoch.velocity_covariance = velocity;
 }
 
+/// The rover as the moving base sees it. Its head, version to iTOW, is read.
+void take_relposned(RecordCursor& cursor, UbxEpoch& epoch) {
+  constexpr double kHeadingStep = 1e-5 * kDegree;
+  constexpr unsigned kValid = 0x105, kCarrier = 0x18, kFixed = 0x10, kMovingBase = 0x20;
+  constexpr size_t kParts = 4;  // north, east, down, length
+  cursor.skip(kParts * sizeof(int32_t));
+  const double heading = ubx_number<int32_t>(cursor) * kHeadingStep;
+  cursor.skip(sizeof(int32_t) + kParts * sizeof(int8_t) + kParts * sizeof(uint32_t));
+  const double accuracy = ubx_number<uint32_t>(cursor) * kHeadingStep;
+  cursor.skip(sizeof(int32_t));
+  const auto flags = cursor.get<uint32_t>();
+  const bool valid = (flags & kValid) == kValid && (flags & kCarrier) == kFixed;
+  if (!valid || (flags & kMovingBase) == 0 || !(accuracy > 0)) return;
+  epoch.heading = GnssHeading{so3::wrap(heading), accuracy};
+}
+
 /// Week and nanoseconds beside an iTOW.
 std::optional<GpsTime> ubx_gps_time(int64_t tow_ms, int week, int32_t nano) {
   const int64_t tow_ns = tow_ms * kUbxMillisecond + nano;
@@ -217,16 +234,17 @@ struct UbxReading {
   size_t head;
   void (*take)(RecordCursor& cursor, UbxEpoch& epoch);
 };
-constexpr uint16_t kHpposllh = 0x0114;
-constexpr std::array<UbxReading, 9> kUbxReadings{{{0x0107, 0, take_pvt},
-                                                  {kHpposllh, 4, take_hpposllh},
-                                                  {0x0136, 0, take_cov},
-                                                  {0x0102, 0, take_posllh},
-                                                  {0x0112, 0, take_velned},
-                                                  {0x0106, 0, take_sol},
-                                                  {0x0103, 0, take_status},
-                                                  {0x0120, 0, take_timegps},
-                                                  {0x0121, 0, take_timeutc}}};
+constexpr uint16_t kHpposllh = 0x0114, kRelposned = 0x013c;
+constexpr std::array<UbxReading, 10> kUbxReadings{{{0x0107, 0, take_pvt},
+                                                   {kHpposllh, 4, take_hpposllh},
+                                                   {kRelposned, 4, take_relposned},
+                                                   {0x0136, 0, take_cov},
+                                                   {0x0102, 0, take_posllh},
+                                                   {0x0112, 0, take_velned},
+                                                   {0x0106, 0, take_sol},
+                                                   {0x0103, 0, take_status},
+                                                   {0x0120, 0, take_timegps},
+                                                   {0x0121, 0, take_timeutc}}};
 
 const UbxReading* ubx_reading(uint16_t key) {
   for (const UbxReading& reading : kUbxReadings) {
@@ -271,8 +289,9 @@ void UbxEpochs::take(const UbxMessage& message) {
     current_->byte = file_.file().position();
     current_->tow_ms = tow_ms;
   }
-  // The head of HPPOSLLH ends with its flags.
-  const bool invalid = message.key() == kHpposllh && (head[3] & 1U) != 0;
+  // The head of HPPOSLLH ends with its flags; RELPOSNED of version 0 has no heading.
+  const bool invalid = (message.key() == kHpposllh && (head[3] & 1U) != 0) ||
+                       (message.key() == kRelposned && head[0] == 0);
   if (!invalid) reading->take(cursor, *current_);
 }
 

@@ -45,6 +45,7 @@ struct UbxEpoch {
   std::optional<UbxVelocity> ecef_velocity;            ///< SOL
   std::optional<Eigen::Matrix3d> position_covariance;  ///< north, east, down [m^2]
   std::optional<Eigen::Matrix3d> velocity_covariance;  ///< [m^2/s^2]
+  std::optional<GnssHeading> heading;                  ///< RELPOSNED with a moving base
   bool position_invalid = false;
 
   const UbxPosition* position() const {

@@ -4,6 +4,7 @@
 
 #include "coordinate_text.h"
 #include "foucault/core/constants.h"
+#include "foucault/core/so3.h"
 #include "foucault/core/time.h"
 #include "foucault/geodesy/local_frame.h"
 #include "foucault/geodesy/wgs84.h"
@@ -236,6 +237,25 @@ TEST_F(UnitsOfTables, UnknownSigmasAreTheConstants) {
                                             HasSubstr("gnss.sigma_m")));
   EXPECT_THAT(refusal("t,lat,lon,h,s,d\n100.01,47.5,-8.25,400.5,-1,1\n", columns),
               HasSubstr("must be greater than zero"));
+}
+
+TEST_F(UnitsOfTables, HeadingOfTwoAntennas) {
+  const std::string rows =
+      "t,lat,lon,h,y,s\n100.01,47.5,-8.25,400.5,350,0.25\n100.02,47.5,-8.25,400.5,,0.25\n"
+      "100.03,47.5,-8.25,400.5,20,0\n";
+  const std::string columns = std::string(kDegrees) + ", heading: y, sigma_heading: s";
+  run(rows, columns);
+  ASSERT_EQ(all<GnssFix>().size(), 3U);
+  EXPECT_NEAR(all<GnssFix>()[0].heading->azimuth, -10 * kDegree, 1e-12);
+  EXPECT_NEAR(all<GnssFix>()[0].heading->sigma, 0.25 * kDegree, 1e-12);
+  EXPECT_FALSE(all<GnssFix>()[1].heading);
+  EXPECT_FALSE(all<GnssFix>()[2].heading);  // of no sigma
+  run(rows, columns, ", heading_sigma_deg: 2");
+  EXPECT_NEAR(all<GnssFix>()[2].heading->sigma, 2 * kDegree, 1e-12);
+  run(rows, std::string(kDegrees) + ", heading: y", ", heading_unit: rad, heading_sigma_deg: 1");
+  EXPECT_NEAR(all<GnssFix>()[2].heading->azimuth, so3::wrap(20), 1e-12);
+  EXPECT_THAT(error_of<UsageError>([&] { run(rows, std::string(kDegrees) + ", heading: y"); }),
+              HasSubstr("heading_sigma_deg"));
 }
 
 // IMU -------------------------------------------------------------------------------------------

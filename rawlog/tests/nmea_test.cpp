@@ -176,17 +176,37 @@ TEST_F(Nmea, SigmasByHdopAreSaid) {
   EXPECT_LT((given - Eigen::Vector3d(1, 1.5, 3)).norm(), 1e-5);
 }
 
-TEST_F(Nmea, WrongChecksumsAndHeadingsAreCounted) {
+TEST_F(Nmea, WrongChecksumsAreCounted) {
   std::string wrong = gga("120001.00");
   wrong[20] = '9';
   const std::string cut = gga("120002.00").substr(0, 40) + "\n";
-  const ImportSummary summary =
-      import("garbage\n" + gga("120000.00") + rmc("120000.00", "070224") + wrong + cut +
-             sentence("GPHDT,274.07,T") + sentence("GPTHS,77.52,A") + "logged " + gga("120003.00"));
+  const ImportSummary summary = import("garbage\n" + gga("120000.00") + rmc("120000.00", "070224") +
+                                       wrong + cut + "logged " + gga("120003.00"));
   EXPECT_EQ(summary.gnss.written, 2);
   EXPECT_THAT(summary.gnss.notices,
-              Contains(AllOf(HasSubstr("left out 2 of 7 sentences"), HasSubstr("line 4"))));
-  EXPECT_THAT(summary.gnss.notices, Contains(HasSubstr("2 headings")));
+              Contains(AllOf(HasSubstr("left out 2 of 5 sentences"), HasSubstr("line 4"))));
+}
+
+/// One a line; one that is estimated or no number is none.
+TEST_F(Nmea, HeadingsOfTwoAntennas) {
+  const std::string first = gga("120000.00") + rmc("120000.00", "070224");
+  const std::string log = first + sentence("GPHDT,274.07,T") + gga("120001.00") +
+                          sentence("GPTHS,77.52,A") + gga("120002.00") + sentence("GPTHS,77.52,E") +
+                          gga("120003.00") +
+                          sentence("PASHR,120003.00,100.5,T,1.0,2.0,0.1,0.2,0.3,0.25,1,1") +
+                          gga("120004.00") + sentence("GPHDT,,T");
+  EXPECT_THAT(import(log).gnss.notices, Contains(HasSubstr("assumed sigma of 0.5 deg")));
+  const std::vector<GnssFix> found = fixes(log);
+  ASSERT_EQ(found.size(), 5U);
+  EXPECT_NEAR(found[0].heading->azimuth, (274.07 - 360) * kDegree, 1e-12);
+  EXPECT_NEAR(found[0].heading->sigma, 0.5 * kDegree, 1e-12);
+  EXPECT_NEAR(found[1].heading->azimuth, 77.52 * kDegree, 1e-12);
+  EXPECT_FALSE(found[2].heading);
+  EXPECT_NEAR(found[3].heading->azimuth, 100.5 * kDegree, 1e-12);
+  EXPECT_NEAR(found[3].heading->sigma, 0.25 * kDegree, 1e-12);
+  EXPECT_FALSE(found[4].heading);
+  mapping("gnss: {heading_sigma_deg: 2}\n");
+  EXPECT_NEAR(fixes(log)[0].heading->sigma, 2 * kDegree, 1e-12);
 }
 
 TEST_F(Nmea, BinaryMessagesBetweenAndSentencesWithoutALineEach) {

@@ -195,9 +195,6 @@ std::string what_we_keep(mrpt::obs::CObservation& observation) {
       it = kept ? std::next(it) : gps->messages.erase(it);
     }
   }
-  if (auto* pose = dynamic_cast<mrpt::obs::CObservationRobotPose*>(&observation)) {
-    pose->pose.cov.setZero();
-  }
   if (auto* odometry = dynamic_cast<mrpt::obs::CObservationOdometry*>(&observation)) {
     odometry->odometry = {};
   }
@@ -493,6 +490,10 @@ TEST(OdometryRecords, OfEveryVersion) {
 TEST(RobotPoseRecords, OfEveryVersion) {
   mrpt::obs::CObservationRobotPose pose;
   pose.sensorLabel = "REFERENCE";
+  for (int row = 0; row < 6; ++row) {
+    for (int column = 0; column <= row; ++column)
+      pose.pose.cov(row, column) = pose.pose.cov(column, row) = 10 * row + column;
+  }
   const std::string newest = serialized(pose);
   expect_as_mrpt_reads(newest, read_robot_pose);
   std::string old = newest.substr(0, newest.size() - 1 - pose_object(3).size()) + '\x88';

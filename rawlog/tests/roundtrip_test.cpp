@@ -191,6 +191,19 @@ TEST_F(FixRoundTrip, VelocityAndItsCovariance) {
   EXPECT_TRUE(read.position_covariance.isApprox(fix.position_covariance, kFloatRelative));
 }
 
+/// North, east, south, west, and near the seam.
+TEST_F(FixRoundTrip, Heading) {
+  for (const double degrees : {0.0, 90.0, 179.9999, -90.0, -179.9999, 12.345}) {
+    GnssFix fix = some_fix(kBegin);
+    fix.heading = GnssHeading{degrees * kDegree, 0.25 * kDegree, 0};
+    const GnssFix read = through_a_log(fix);
+    ASSERT_TRUE(read.heading);
+    EXPECT_NEAR(so3::wrap(read.heading->azimuth - fix.heading->azimuth), 0, 1e-14) << degrees;
+    EXPECT_NEAR(read.heading->sigma, fix.heading->sigma, 1e-17);
+  }
+  EXPECT_FALSE(through_a_log(some_fix(kBegin)).heading);
+}
+
 TEST_F(FixRoundTrip, CorrelatedPosition) {
   GnssFix fix = some_fix(kBegin);
   fix.position_covariance << 4e-4, -1e-4, 2e-4, -1e-4, 9e-4, 1e-4, 2e-4, 1e-4, 2.5e-3;

@@ -131,6 +131,27 @@ TEST_F(Ubx, PvtIsAFix) {
   EXPECT_NEAR(std::sqrt(fix.velocity_covariance(0, 0)), 0.2 / std::sqrt(2), 1e-7);
 }
 
+/// NAV-RELPOSNED of the same time: direction 123.4 deg, accuracy 0.35 deg.
+std::string relposned(uint32_t flags, uint8_t version = 1, uint32_t accuracy = 35'000) {
+  return frame(
+      1, 0x3c,
+      packed(version, uint8_t{0}, uint16_t{0}, kTow, -60, 90, 2, 108, 12'340'000, 0U, uint8_t{0},
+             uint8_t{0}, uint8_t{0}, uint8_t{0}, 100U, 100U, 100U, 100U, accuracy, 0U, flags));
+}
+
+/// Fix and solution ok, valid, fixed, moving base, heading valid.
+TEST_F(Ubx, HeadingOfAMovingBase) {
+  constexpr uint32_t kGood = 0x1 | 0x4 | 0x10 | 0x20 | 0x100;
+  const GnssFix fix = fix_of(Pvt{}.bytes() + relposned(kGood));
+  ASSERT_TRUE(fix.heading);
+  EXPECT_NEAR(fix.heading->azimuth, 123.4 * kDegree, 1e-9);
+  EXPECT_NEAR(fix.heading->sigma, 0.35 * kDegree, 1e-12);
+  for (const uint32_t missing : {0x1U, 0x4U, 0x10U, 0x20U, 0x100U})
+    EXPECT_FALSE(fix_of(Pvt{}.bytes() + relposned(kGood & ~missing)).heading) << missing;
+  EXPECT_FALSE(fix_of(Pvt{}.bytes() + relposned(kGood, 0)).heading);
+  EXPECT_FALSE(fix_of(Pvt{}.bytes() + relposned(kGood, 1, 0)).heading);
+}
+
 TEST_F(Ubx, QualityByCarrierSolution) {
   std::string log;
   const std::vector<std::pair<int, FixQuality>> cases{{0x01, FixQuality::single},

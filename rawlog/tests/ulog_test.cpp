@@ -1,7 +1,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstring>
+#include <limits>
+#include <utility>
+#include <vector>
 
 #include "foucault/core/constants.h"
 #include "foucault/rawlog/import_ulog.h"
@@ -187,6 +191,32 @@ TEST_F(Ulog, NewNames) {
   EXPECT_EQ(fix.t_ns, static_cast<int64_t>(kBoot + 100'000) * 1000);  // no UTC: since 1970
   EXPECT_NEAR(fix.antenna.latitude, 63.5 * kDegree, 1e-15);
   EXPECT_NEAR(fix.antenna.height, 42.125, 1e-12);
+}
+
+/// Of two antennas: heading and its accuracy, which may be NaN.
+TEST_F(Ulog, Heading) {
+  begin();
+  log_.message('F', std::string("sensor_gps:uint64_t timestamp;") +
+                        (std::strchr(kNewGnss, ':') + 1) +
+                        "float eph;float epv;float heading;float heading_accuracy;"
+                        "uint8_t fix_type;");
+  log_.subscribe(3, "sensor_gps");
+  increments(100);
+  const float none = std::numeric_limits<float>::quiet_NaN();
+  const std::pair<float, float> told[] = {{1.25F, 0.01F}, {-2.5F, none}, {none, none}};
+  uint64_t t = kBoot;
+  for (const auto& [heading, accuracy] : told) {
+    log_.data(3, packed(t += 100'000, 63.5, 10.25, 42.125, 0.0, 0.5F, 0.75F, heading, accuracy,
+                        uint8_t{4}));
+  }
+  import();
+  const std::vector<GnssFix> fixes = all<GnssFix>();
+  ASSERT_EQ(fixes.size(), 3U);
+  EXPECT_NEAR(fixes[0].heading->azimuth, 1.25, 1e-12);
+  EXPECT_NEAR(fixes[0].heading->sigma, 0.01, 1e-9);  // float
+  EXPECT_NEAR(fixes[1].heading->azimuth, -2.5, 1e-12);
+  EXPECT_NEAR(fixes[1].heading->sigma, 0.5 * kDegree, 1e-12);
+  EXPECT_FALSE(fixes[2].heading);
 }
 
 /// A boot clock 50 ppm fast; one UTC that is wrong; delays of reception that vary.

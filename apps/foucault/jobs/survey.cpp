@@ -139,6 +139,7 @@ bool leaves_open(const Settings& settings) {
   if (c.mode == "none") return false;
   const bool wheels = aids.uses(aids.nonholonomic) || aids.uses(aids.wheel_speed);
   return c.time_offset != "off" || c.noise != "off" ||
+         (aids.uses(aids.heading) && c.baseline_heading == "auto") ||
          (wheels && (c.mounting == "auto" || c.wheel_scale == "auto" ||
                      c.wheel_lever_arm == "auto" || c.cornering_compliance == "auto"));
 }
@@ -243,7 +244,7 @@ Survey Surveyor::survey(const std::string& log, Settings settings) {
   const double told_sigma_s = settings.calibrate.time_offset_sigma_s;
   found.time_offset_s = settings.calibrate.time_offset_s;
   found.time_offset_sigma_s = told_sigma_s;
-  settings.calibrate = settings.calibrate.resolved({true, true});
+  settings.calibrate = settings.calibrate.resolved({true, true, true});
   for (int pass = 0; pass < kMostPasses; ++pass) {
     found.failure.clear();
     const std::optional<Watcher> watcher =
@@ -254,7 +255,8 @@ Survey Surveyor::survey(const std::string& log, Settings settings) {
         state::as_users_know(*watcher->last, watcher->told), watcher->told.layout);
     found.told = evaluation::calibrated_blocks(state::prior_as_users_know(watcher->told),
                                                watcher->told.layout);
-    found.carried = {uses(*watcher, "nonholonomic"), uses(*watcher, "wheel_speed")};
+    found.carried = {uses(*watcher, "nonholonomic"), uses(*watcher, "wheel_speed"),
+                     uses(*watcher, "heading")};
     const std::optional<OffsetLeft> left = offset_left(*watcher, settings.calibrate.layout());
     const bool known = left && std::abs(found.time_offset_s + left->value) < kMost;
     const bool moves = known && !left->small();

@@ -263,7 +263,7 @@ TEST(WithPartsOff, EachAidAllOfThemCalibrationAndBoth) {
   settings.aids.gnss_velocity = "off";
   settings.aids.wheel_speed = "on";
   settings.aids.zero_velocity = "auto";
-  settings.aids.nonholonomic = "off";
+  settings.aids.nonholonomic = settings.aids.heading = "off";
   settings.calibrate.wheel_scale = "on";
   const Ablation ablation =
       with_parts_off(cross({"a.rawlog", "b.rawlog"}, {"ekf", "batch"}, settings));

@@ -50,6 +50,7 @@ std::vector<FigureLook> known_looks() {
       {"calibration_vehicle",
        "Calibration: mounting, wheels, time",
        {{"mounting", "Mounting", "°", 1 / kDegree, {"pitch", "heading"}},
+        {"baseline_heading", "Baseline of antennas", "°", 1 / kDegree, {""}},
         {"wheel_scale", "Wheel scale", "%", 100, {""}},
         {"cornering_compliance", "Cornering compliance", "mrad/(m/s²)", 1000, {""}},
         {"time_offset", "Time offset", "ms", 1000, {""}},

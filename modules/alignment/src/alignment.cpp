@@ -167,6 +167,8 @@ class Aligner::Impl {
   double accel_prior() const;
   void decide();
   void conclude(double largest_sigma);
+  void start_by_antennas();
+  std::optional<AlignmentFindings> level_findings() const;
   void start_along_course();
   void note_course();
   std::optional<state::Epoch> start_from(const state::Epoch& found, double level) const;
@@ -465,14 +467,18 @@ void Aligner::Impl::decide() {
     if (given_.heading || belief_->sigma <= patience.sigma) conclude(patience.sigma);
     break;
   }
+  if (!initial_ && age > kPatience[0].seconds) start_by_antennas();
   if (!initial_ && age > 0.95 * options_.max_rest_s) start_along_course();
   next_try_ns_ = now_ns + nanoseconds(kRetry);
 }
 
 void Aligner::Impl::finish() {
-  if (initial_ || !bank_.started()) return;
-  belief_ = bank_.belief();
-  if (given_.heading || belief_->sigma <= kLargestSigma) conclude(kLargestSigma);
+  if (initial_ || all_given()) return;
+  if (bank_.started()) {
+    belief_ = bank_.belief();
+    if (given_.heading || belief_->sigma <= kLargestSigma) conclude(kLargestSigma);
+  }
+  if (!initial_) start_by_antennas();
   if (!initial_) start_along_course();
 }
 
@@ -560,6 +566,30 @@ void Aligner::Impl::conclude(double largest_sigma) {
                   given_.heading ? ", heading given"
                                  : fmt::format(", after which its heading was known to {:.1f} deg",
                                                sigma / kDegree)));
+}
+
+/// At the rest, else at the first fix that is kept: of a vehicle heading north.
+std::optional<AlignmentFindings> Aligner::Impl::level_findings() const {
+  if (rest_found_ && rest_found_->first.t_ns >= track_.begin_ns())
+    return findings_at_rest(rest_found_->means, rest_found_->first, noise_, mounting_.q_v_b);
+  if (!bank_.started() && rest_.established() && rest_is_proven())
+    return findings_at_rest(rest_.means(), fixes_at_rest().front(), noise_, mounting_.q_v_b);
+  const std::vector<GnssFix> fixes = track_.first_fixes(kStretch);
+  if (fixes.size() < 3) return std::nullopt;
+  return findings_in_motion(fixes, track_.steps(), noise_, mounting_.q_v_b);
+}
+
+/// The heading of two antennas, where motion tells none: they would contradict it if they were
+/// wrong, and then nobody would know.
+void Aligner::Impl::start_by_antennas() {
+  if (given_.heading || (belief_ && belief_->sigma <= kLargestSigma)) return;
+  const std::optional<AlignmentFindings> level = level_findings();
+  if (!level || !level->fix.heading || wrong_up(level->specific_force_b)) return;
+  const AlignmentFindings found = with_antenna_heading(*level);
+  const state::Epoch start = with_baseline_block(
+      with_antenna_blocks(initial_state(found, noise_, layout_), layout_), found, layout_);
+  accept(with_given_angles(start, mounting_.q_v_b, {given_.roll, given_.pitch, {}}),
+         "by the heading of two antennas, for motion did not tell it");
 }
 
 void Aligner::Impl::note_course() {

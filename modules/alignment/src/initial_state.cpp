@@ -31,6 +31,11 @@ double prior_sigma(double turn_on_sigma, double bias_sigma) {
   return std::hypot(turn_on_sigma, bias_sigma);
 }
 
+/// Of b, without its bias.
+Vector3d rate_n(const AlignmentFindings& findings) {
+  return geodesy::wgs84::earth_rate_n(findings.fix.antenna.latitude) + findings.turn_n;
+}
+
 /// A scalar that is to be given columns.
 state::Linearized scalar(const state::Epoch& epoch, double innovation, double variance) {
   state::Linearized z(1, static_cast<int>(epoch.covariance.cols()));
@@ -117,9 +122,7 @@ state::StateMatrix covariance_of(const AlignmentFindings& findings, const Quater
   by_attitude.block<3, 3>(0, kMotion + 3) = keep_heading * level * R.transpose();
   by_attitude.col(kHeading) = about;
 
-  const Vector3d rate_b =
-      R.transpose() *
-      (geodesy::wgs84::earth_rate_n(findings.fix.antenna.latitude) + findings.turn_n);
+  const Vector3d rate_b = R.transpose() * rate_n(findings);
   Jacobian by_gyro_bias = -so3::skew(rate_b) * by_attitude;
   by_gyro_bias.block<3, 3>(0, kGyro).setIdentity();
 
@@ -180,10 +183,7 @@ state::Epoch initial_state(const AlignmentFindings& findings, const imu::ImuNois
   epoch.slow = state::SlowVector::Zero(layout.slow_size());
   epoch.q_n_b = attitude_of(findings);
   place_at_imu(epoch, findings.fix, findings.antenna_velocity_n, findings.omega_b);
-  epoch.bias.gyro =
-      findings.gyro_b -
-      epoch.q_n_b.conjugate() *
-          (geodesy::wgs84::earth_rate_n(findings.fix.antenna.latitude) + findings.turn_n);
+  epoch.bias.gyro = findings.gyro_b - epoch.q_n_b.conjugate() * rate_n(findings);
   epoch.covariance =
       covariance_of(findings, epoch.q_n_b, accel_prior_sigma(findings, noise, layout), layout);
   fuse_gyro_prior(epoch, prior_sigma(noise.gyro_turn_on_sigma, noise.gyro_bias_sigma));
@@ -230,6 +230,41 @@ state::Epoch with_antenna_blocks(const state::Epoch& epoch, const state::Layout&
     state::columns_of(state::rows_of(J, position), *arm) = -epoch.q_n_b.toRotationMatrix();
   }
   if (offset) state::columns_of(state::rows_of(J, position), *offset) = epoch.velocity_n;
+  out.covariance = J * out.covariance * J.transpose();
+  return out;
+}
+
+AlignmentFindings with_antenna_heading(const AlignmentFindings& findings) {
+  constexpr double kUsedAgain = 2;  // in the run: with twice the variance
+  const GnssHeading& measured = *findings.fix.heading;
+  const Vector3d along_v(std::cos(measured.baseline), std::sin(measured.baseline), 0);
+  AlignmentFindings out = findings;
+  out.heading = so3::wrap(measured.azimuth - measured.baseline);
+  const Quaterniond q_n_v = attitude_of(out) * findings.q_v_b.conjugate();
+  out.heading = so3::wrap(out.heading + measured.azimuth - geodesy::azimuth(q_n_v * along_v));
+  out.heading_variance = kUsedAgain * measured.sigma * measured.sigma;
+  return out;
+}
+
+/// As covariance_of() has the error of the heading.
+state::Epoch with_baseline_block(const state::Epoch& epoch, const AlignmentFindings& findings,
+                                 const state::Layout& layout) {
+  const state::SlowBlock* baseline = layout.find(baseline_heading);
+  if (!baseline) return epoch;
+  state::Epoch out = state::with_slow_blocks(epoch, layout);
+  const Matrix3d R = epoch.q_n_b.toRotationMatrix();
+  const Vector3d along_n = specific_force_n(findings).normalized();
+  const Vector3d by_heading = R.transpose() * along_n / along_n.z();
+  const Vector3d rate_b = R.transpose() * rate_n(findings);
+  const Vector3d& lever = findings.fix.p_b_a;
+  state::StateMatrix J = state::StateMatrix::Identity(layout.size(), layout.size());
+  const auto by_baseline = [&](const state::NodeBlock& block) {
+    return state::columns_of(state::rows_of(J, block), *baseline);
+  };
+  by_baseline(position) = -R * lever.cross(by_heading);
+  by_baseline(velocity) = -R * findings.omega_b.cross(lever).cross(by_heading);
+  by_baseline(attitude) = -by_heading;
+  by_baseline(gyro_bias) = rate_b.cross(by_heading);
   out.covariance = J * out.covariance * J.transpose();
   return out;
 }

@@ -68,6 +68,15 @@ struct GivenAngles {
 state::Epoch with_given_angles(const state::Epoch& epoch, const Eigen::Quaterniond& q_v_b,
                                const GivenAngles& given);
 
+/// The findings with the heading of two antennas that the fix has, whose direction in the vehicle
+/// is taken as told. Precondition: it has one.
+AlignmentFindings with_antenna_heading(const AlignmentFindings& findings);
+
+/// The state from these shares what is not known of that direction: d(heading) has -d(direction)
+/// beside the error of the measurement. As it is where the layout has no baseline_heading.
+state::Epoch with_baseline_block(const state::Epoch& epoch, const AlignmentFindings& findings,
+                                 const state::Layout& layout);
+
 /// State from three given angles; biases zero with their priors.
 /// velocity_covariance [m^2/s^2].
 state::Epoch given_state(const GnssFix& fix, const Eigen::Vector3d& antenna_velocity_n,

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
+#include <cmath>
 #include <random>
 
 #include "foucault/core/constants.h"
@@ -98,6 +99,35 @@ class InitialStateTest : public ::testing::Test {
 
 /// 400 chi-squares of 15 have a mean within 15 +- 0.9, 99.9 %.
 TEST_F(InitialStateTest, ErrorsAreThoseOfTheCovariance) { EXPECT_NEAR(mean_nees(), 15, 0.9); }
+
+/// The heading measured by two antennas whose baseline looks aside, by 40 deg as told and by an
+/// error that nobody knows: 400 chi-squares of 16 have a mean within 16 +- 0.95, 99.9 %.
+TEST_F(InitialStateTest, SharesTheErrorOfTheBaseline) {
+  constexpr int kRuns = 400;
+  constexpr double kTold = 40 * kDegree, kBaselineSigma = 0.05, kSigma = 0.01;
+  state::Layout layout;
+  layout.add(state::block::baseline_heading, kBaselineSigma);
+  double sum = 0;
+  for (int run = 0; run < kRuns; ++run) {
+    AlignmentFindings findings = draw_findings();
+    const double error = kBaselineSigma * normal_(rng_);
+    const double direction = kTold + error;
+    const Vector3d along_b =
+        q_v_b_.conjugate() * Vector3d(std::cos(direction), std::sin(direction), 0);
+    // Used again, hence with the variance doubled.
+    const double noise = std::sqrt(2.0) * kSigma * normal_(rng_);
+    const double azimuth = geodesy::azimuth(true_.q_n_b * along_b) + noise;
+    findings.fix.heading = GnssHeading{azimuth, kSigma, kTold};
+    findings = with_antenna_heading(findings);
+    const state::Epoch epoch =
+        with_baseline_block(initial_state(findings, noise_, layout), findings, layout);
+    state::NavState truth = true_;
+    truth.slow = state::SlowVector::Constant(1, error);
+    const state::StateVector errors = state::boxminus(truth, epoch);
+    sum += errors.dot(epoch.covariance.ldlt().solve(errors));
+  }
+  EXPECT_NEAR(sum / kRuns, 16, 0.95);
+}
 
 /// A level errs by the accelerometers' bias: who knows that knows the level, and by nothing else.
 TEST_F(InitialStateTest, LevelErrorFollowsFromTheBias) {

@@ -26,6 +26,7 @@ double factor_of(NoiseOf kind, int row, const NoiseModel& noise) {
       return row == 0 ? noise.slip : noise.bounce;
     case NoiseOf::wheel:
       return noise.wheel;
+    case NoiseOf::heading:
     case NoiseOf::rest:
       return 1;
   }
@@ -138,8 +139,6 @@ class WayFilter {
   Eigen::Matrix<double, kSize, kSize> P_ = Eigen::Matrix<double, kSize, kSize>::Zero();
 };
 
-bool is_fix(NoiseOf kind) { return kind == NoiseOf::position || kind == NoiseOf::velocity; }
-
 /// From the end of a leg on without fixes. The next fix may come late by a third.
 void look_ahead(const RecordedWay& way, std::size_t leg, WayFilter filter,
                 const std::vector<double>& horizons, std::vector<Prediction>& out) {
@@ -156,7 +155,7 @@ void look_ahead(const RecordedWay& way, std::size_t leg, WayFilter filter,
         if (since < kLate * *next) out.push_back(filter.meet(z, *next, node.t_ns));
         while (next != horizons.end() && since >= *next) ++next;
       }
-      if (!is_fix(z.kind)) filter.use(z);
+      if (!is_of_receiver(z.kind)) filter.use(z);
       filter.correct(z);
     }
   }

@@ -18,6 +18,7 @@ constexpr double kSettles = 60;  // [s]
 NoiseOf noise_of(std::string_view name) {
   if (name == "gnss_position") return NoiseOf::position;
   if (name == "gnss_velocity") return NoiseOf::velocity;
+  if (name == "heading") return NoiseOf::heading;
   if (name == "nonholonomic") return NoiseOf::slip;
   if (name == "wheel_speed") return NoiseOf::wheel;
   return NoiseOf::rest;

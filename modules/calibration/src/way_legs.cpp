@@ -15,9 +15,8 @@ bool has_fix(const WayNode& node) {
 }
 
 bool has_aid(const WayNode& node) {
-  return std::any_of(node.measured.begin(), node.measured.end(), [](const WayMeasurement& z) {
-    return z.kind != NoiseOf::position && z.kind != NoiseOf::velocity;
-  });
+  return std::any_of(node.measured.begin(), node.measured.end(),
+                     [](const WayMeasurement& z) { return !is_of_receiver(z.kind); });
 }
 
 /// The transition F of a node: ((motion), (0, decay)).

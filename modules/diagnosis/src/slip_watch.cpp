@@ -7,6 +7,7 @@
 
 #include "foucault/core/median.h"
 #include "foucault/core/so3.h"
+#include "lasting_noise.h"
 
 namespace foucault::diagnosis {
 namespace {
@@ -22,39 +23,17 @@ constexpr double kLeastSlip = 0.01;  // [m/s], below which no road is smooth
 
 /// Deviation beyond what is explained, with two sigmas of what so many values tell of it, so that
 /// errors of the state do not pass for the absence of slip; and of white noise of as much power a
-/// sample: correlations are summed up in pairs until one is negative (Geyer, Statistical Science 7,
-/// 1992).
+/// sample.
 struct SlipNoise {
   double deviation = 0, white = 0;
 };
 
 SlipNoise slip_noise_of(const std::vector<double>& r, double explained) {
-  std::vector<double> magnitudes;
-  for (const double value : r) magnitudes.push_back(std::abs(value));
-  const double robust = median(magnitudes) / 0.6745;
-  std::vector<double> cut;
-  double variance = 0;
-  for (const double value : r) {
-    cut.push_back(std::clamp(value, -3 * robust, 3 * robust));
-    variance += cut.back() * cut.back();
-  }
-  const std::size_t n = cut.size();
-  variance /= static_cast<double>(n);
-  const auto correlation = [&](std::size_t lag) {
-    double sum = 0;
-    for (std::size_t i = lag; i < n; ++i) sum += cut[i] * cut[i - lag];
-    return variance > 0 ? sum / static_cast<double>(n) / variance : 0;
-  };
-  double factor = 1;
-  for (std::size_t lag = 1; lag + 1 < n / 3; lag += 2) {
-    const double pair = correlation(lag) + correlation(lag + 1);
-    if (pair <= 0) break;
-    factor += 2 * pair;
-  }
-  const double known_to = 2 * variance * std::sqrt(2 * factor / static_cast<double>(n));
-  const double beyond = std::sqrt(std::max(variance - explained, 0.0) + known_to);
+  const LastingNoise noise = lasting_noise(r);
+  const double beyond =
+      std::sqrt(std::max(noise.variance - explained, 0.0) + 2 * noise.variance_sigma);
   const double deviation = std::max(beyond, kLeastSlip);
-  return {deviation, deviation * std::sqrt(factor)};
+  return {deviation, deviation * std::sqrt(noise.factor)};
 }
 
 }  // namespace

@@ -120,6 +120,8 @@ std::string aid_remedy(const std::string& name) {
     return "; the gyroscopes' noise may be larger (imu.arw_deg_sqrt_h), or the vehicle shakes (do "
            "without: aids.zero_velocity=off)";
   }
+  if (name == "heading")
+    return "; give a larger one (aids.heading_sigma_deg), or do without (aids.heading=off)";
   for (const char* with_key : {"gnss_velocity", "zero_velocity", "nonholonomic", "wheel_speed"}) {
     if (name != with_key) continue;
     return fmt::format("; give larger ones (aids.{0}_sigma_m_s), or do without (aids.{0}=off)",

@@ -30,13 +30,16 @@ Antenna::Antenna(const state::NavState& x, const MeanMotion& mean, const state::
 }
 
 void Antenna::add_swing(double factor, state::Linearized& z) const {
-  const Eigen::Matrix3d by_omega = -factor * C * so3::skew(l_b);
   state::columns_of(z.H, state::block::attitude) -= factor * C * so3::skew(swing_b);
-  state::columns_of(z.H, state::block::gyro_bias) -= by_omega * by_scale_.asDiagonal();
-  if (gyro_scale) {
-    state::columns_of(z.H, *gyro_scale) -= by_omega * omega_b.cwiseProduct(by_scale_).asDiagonal();
-  }
+  add_rate(-factor * C * so3::skew(l_b), z);
   if (lever_arm) state::columns_of(z.H, *lever_arm) += factor * C * so3::skew(omega_b);
+}
+
+void Antenna::add_rate(const Eigen::Matrix3d& factor, state::Linearized& z) const {
+  state::columns_of(z.H, state::block::gyro_bias) -= factor * by_scale_.asDiagonal();
+  if (gyro_scale) {
+    state::columns_of(z.H, *gyro_scale) -= factor * omega_b.cwiseProduct(by_scale_).asDiagonal();
+  }
 }
 
 void Antenna::put_time(const Eigen::Vector3d& by_offset, state::Linearized& z) const {

@@ -18,6 +18,9 @@ struct Antenna {
   /// d(C (omega x l)) by the blocks, times `factor`, added to H.
   void add_swing(double factor, state::Linearized& z) const;
 
+  /// d(omega) by the blocks, times `factor`, added to H.
+  void add_rate(const Eigen::Matrix3d& factor, state::Linearized& z) const;
+
   /// d(offset) by the blocks, times `by_offset`, into H.
   void put_time(const Eigen::Vector3d& by_offset, state::Linearized& z) const;
 

@@ -17,6 +17,7 @@
 #include "foucault/geodesy/wgs84.h"
 #include "foucault/measurement/gnss_position.h"
 #include "foucault/measurement/gnss_velocity.h"
+#include "foucault/measurement/heading.h"
 #include "foucault/measurement/nonholonomic.h"
 #include "foucault/measurement/predicted.h"
 #include "foucault/measurement/wheel_speed.h"
@@ -123,6 +124,24 @@ BodyStretch random_stretch(const state::NavState& x, std::mt19937& rng) {
 
 Eigen::Quaterniond random_mounting(std::mt19937& rng) { return so3::exp(3 * draw3(rng)); }
 
+/// Of a baseline that is not steep, wherever it was a tenth of a second ago: its azimuth would tell
+/// little and bend much.
+ObservationPtr random_heading(const state::NavState& x, std::mt19937& rng) {
+  const Eigen::Quaterniond q_v_b = random_mounting(rng);
+  GnssFix fix = random_fix(x, rng);
+  fix.heading = GnssHeading{between(rng, -kPi, kPi), 0.01, 0};
+  fix.since_first_s = 0.2;
+  double down = 1;
+  while (std::abs(down) > 0.4) {
+    double& baseline = fix.heading->baseline;
+    baseline = between(rng, -kPi, kPi);
+    down =
+        (x.q_n_b * (q_v_b.conjugate() * Eigen::Vector3d(std::cos(baseline), std::sin(baseline), 0)))
+            .z();
+  }
+  return std::make_shared<Heading>(fix, q_v_b);
+}
+
 /// Every slow block there is; a new one is one line here.
 state::Layout every_block() {
   state::Layout layout;
@@ -172,6 +191,7 @@ const std::vector<Kind> kKinds = {
        return std::make_shared<WheelSpeedMean>(random_stretch(x, rng), random_mounting(rng), 20,
                                                0.02);
      }},
+    {"heading", random_heading},
     {"zero_velocity", [](const auto&, auto&) { return std::make_shared<ZeroVelocity>(0.02); }},
     {"zero_rate",
      [](const auto&, auto& rng) { return std::make_shared<ZeroRate>(draw3(rng), 1e-4); }},
@@ -259,7 +279,7 @@ TEST_P(Observations, JacobianIsThatOfDifferences) {
 /// Blocks elsewhere, or not at all.
 TEST_P(Observations, JacobianFollowsTheLayout) {
   std::mt19937 rng{43};
-  std::vector<state::Layout> layouts(8);
+  std::vector<state::Layout> layouts(9);
   layouts[7].add(state::block::time_drift, 1);
   layouts[1].add(state::block::gyro_scale, 1).add(kTemperature, 1);
   layouts[2].add(kTemperature, 1);
@@ -274,6 +294,11 @@ TEST_P(Observations, JacobianFollowsTheLayout) {
       .add(state::block::wheel_lever_arm, 1)
       .add(state::block::cornering_compliance, 1)
       .add(state::block::mounting, 1);
+  layouts[8]
+      .add(state::block::time_offset, 1)
+      .add(state::block::baseline_heading, 1)
+      .add(state::block::gyro_scale, 1)
+      .add(state::block::time_drift, 1);
   for (const state::Layout& layout : layouts) {
     for (int i = 0; i < 20; ++i)
       EXPECT_LE(worst_of(random_sample(GetParam(), layout, rng), layout), 1) << layout.size();
@@ -310,6 +335,34 @@ TEST_P(Observations, HasItsName) {
   std::mt19937 rng{46};
   const Sample s = random_sample(GetParam(), every_block(), rng);
   EXPECT_EQ(s.observation->name(), GetParam().name);
+}
+
+/// Level, looking east, its baseline to the right: azimuth 180 deg; turning right, 0.1 s ago it was
+/// less.
+TEST(Heading, IsTheAzimuthOfTheBaselineAtItsTime) {
+  state::NavState x;
+  x.q_n_b = so3::from_euler({0, 0, 0.5 * kPi});
+  x.slow = Eigen::Vector2d(0.1, 0.02);
+  state::Layout layout;
+  layout.add(state::block::time_offset, 1).add(state::block::baseline_heading, 1);
+  GnssFix fix;
+  fix.heading = GnssHeading{-3, 0.01, 0.5 * kPi};
+  const Heading heading(fix, Eigen::Quaterniond::Identity());
+  const state::Linearized z = heading.linearize(x, {{0, 0, 0.5}, {0, 0, 0}}, layout);
+  EXPECT_NEAR(z.r[0], so3::wrap(-3 - (kPi + 0.02 - 0.05)), 1e-12);
+  EXPECT_NEAR(state::part(state::StateVector(z.H.row(0).transpose()),
+                          *layout.find(state::block::time_offset))[0],
+              -0.5, 1e-12);
+  EXPECT_NEAR(z.R(0, 0), 1e-4, 1e-15);
+}
+
+TEST(Heading, OfASteepBaselineTellsNothing) {
+  state::NavState x;
+  x.q_n_b = so3::from_euler({0, 85 * kDegree, 0});
+  GnssFix fix;
+  fix.heading = GnssHeading{1, 0.01, 0};
+  const Heading heading(fix, Eigen::Quaterniond::Identity());
+  EXPECT_GT(heading.linearize(x, {}, {}).R(0, 0), 1e5);
 }
 
 TEST(Observation, EveryObservationHasALine) {

@@ -43,6 +43,7 @@ Driving::Driving(std::unique_ptr<measurement::Navigator> navigator,
       stops_(options.node_interval_s),
       gate_(options.gnss),
       aiding_(options, sink),
+      heading_(options, sink),
       velocity_judge_(options.gnss),
       recent_{kRecentRatesMemory} {
   if (sink.wants_predictions()) probe_.emplace();
@@ -53,6 +54,7 @@ void Driving::start(const state::Epoch& initial) {
   stops_.start(time_ns_);
   gate_.start(time_ns_);
   velocity_judge_.start(time_ns_);
+  heading_.start(time_ns_);
   if (probe_) probe_->restart();
   aiding_.start(time_ns_, initial.bias);
   navigator_->start(initial);
@@ -92,6 +94,15 @@ Interruption Driving::interruption() {
 void Driving::doubt_state(int64_t t_ns) {
   gate_.doubt_state(t_ns);
   velocity_judge_.doubt_state(t_ns);
+  heading_.doubt_state(t_ns);
+}
+
+std::vector<std::string> Driving::remarks() const {
+  std::vector<std::string> all;
+  for (const std::optional<std::string>& remark : {aiding_.remark(), heading_.remark()}) {
+    if (remark) all.push_back(*remark);
+  }
+  return all;
 }
 
 imu::RecentRates Driving::take_recent_rates(const ImuIncrement& next) {
@@ -246,6 +257,7 @@ void Driving::use(const GnssFix& fix, FixResult& result) {
   navigator_->update(measurement::gnss_position(fix));
   fix_used();
   if (fix.velocity_n && options_.aids.uses_gnss_velocity()) use_velocity(fix);
+  heading_.use(fix, *navigator_);
   result.postfit_n = navigator_->innovation(measurement::GnssPosition(fix)).value;
 }
 

@@ -15,6 +15,7 @@
 #include "foucault/measurement/navigator.h"
 #include "foucault/navigation/run_options.h"
 #include "foucault/state/interfaces.h"
+#include "heading_aid.h"
 #include "prediction_probe.h"
 #include "stop_queue.h"
 
@@ -63,7 +64,7 @@ class Driving {
   const diagnosis::FixJudge& judge() const { return gate_.judge(); }
   std::vector<GnssFix> pending_fixes() const { return stops_.pending_fixes(); }
   /// Of the aids, at the end.
-  std::optional<std::string> remark() const { return aiding_.remark(); }
+  std::vector<std::string> remarks() const;
   int64_t late_fixes() const { return late_; }  ///< left out: they came after later ones
 
   /// For a fix that does not come so far.
@@ -100,6 +101,7 @@ class Driving {
   StopQueue stops_;
   FixGate gate_;
   Aiding aiding_;
+  HeadingAid heading_;
   diagnosis::FixJudge velocity_judge_;
   std::optional<FixInDoubt> in_doubt_;
   imu::RecentRates recent_;               ///< before now, for bridging a hole

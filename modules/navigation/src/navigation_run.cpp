@@ -96,8 +96,8 @@ void NavigationRun::finish() {
   for (const std::string& line : intake_->summary(driving_->late_fixes())) {
     sink_.notice({driving_->time_ns(), NoticeKind::skipped, line});
   }
-  if (const std::optional<std::string> remark = driving_->remark()) {
-    sink_.notice({driving_->time_ns(), NoticeKind::skipped, *remark});
+  for (const std::string& remark : driving_->remarks()) {
+    sink_.notice({driving_->time_ns(), NoticeKind::skipped, remark});
   }
   for (const state::Notice& warning : intake_->warnings()) sink_.warning(warning);
 }

@@ -1,5 +1,9 @@
 #include "foucault/simulation/gnss_simulator.h"
 
+#include <cmath>
+
+#include "foucault/core/so3.h"
+#include "foucault/geodesy/course.h"
 #include "foucault/geodesy/wgs84.h"
 
 namespace foucault::simulation {
@@ -20,6 +24,7 @@ GnssSimulator::GnssSimulator(const ScenarioOptions& options)
       position_draws_(options.seed, RandomStream::gnss_position),
       velocity_draws_(options.seed, RandomStream::gnss_velocity),
       coloured_draws_(options.seed, RandomStream::gnss_coloured),
+      heading_draws_(options.seed, RandomStream::gnss_heading),
       coloured_(coloured_draws_.normal3()) {}
 
 bool GnssSimulator::degraded(double t) const {
@@ -59,7 +64,23 @@ GnssFix GnssSimulator::measure(const Motion& motion, int64_t t_ns, double t) {
     fix.velocity_n = point_velocity_n(motion, p_v_a_) + velocity_noise_n;
     fix.velocity_covariance = velocity_sigma * velocity_sigma * Eigen::Matrix3d::Identity();
   }
+  if (options_.heading_sigma_deg > 0) fix.heading = heading(motion);
   return fix;
+}
+
+GnssHeading GnssSimulator::heading(const Motion& motion) {
+  const double direction = options_.heading_baseline_error_deg * kDegree;
+  const Eigen::Vector3d along_v(std::cos(direction), std::sin(direction), 0);
+  const double draw = heading_draws_.normal();
+  const double anywhere = heading_draws_.phase();
+  const bool is_outlier = heading_draws_.happens(0.01 * options_.heading_outlier_percent);
+  GnssHeading heading;
+  heading.sigma = options_.heading_sigma_deg * kDegree;
+  const double noise =
+      options_.gnss_noise ? options_.heading_noise_factor * heading.sigma * draw : 0;
+  heading.azimuth = so3::wrap(geodesy::azimuth(motion.q_n_v * along_v) + noise);
+  if (is_outlier) heading.azimuth = so3::wrap(anywhere);
+  return heading;
 }
 
 }  // namespace foucault::simulation

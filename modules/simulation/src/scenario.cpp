@@ -209,6 +209,14 @@ void ScenarioOptions::fields(ConfigFields& f) {
            "change of that offset since the start");
   f.vector3("lever_arm_m", lever_arm_m, "IMU to antenna, forward, right, down");
   f.vector3("lever_arm_error_m", lever_arm_error_m, "true lever arm minus lever_arm_m");
+  f.number("heading_sigma_deg", heading_sigma_deg, kNotNegative,
+           "heading of two antennas in the fixes, as reported; 0: none");
+  f.number("heading_noise_factor", heading_noise_factor, kNotNegative,
+           "its true noise, by the reported sigma");
+  f.number("heading_baseline_error_deg", heading_baseline_error_deg, {-180, 180},
+           "true direction of the baseline, from forward to the right; forward is told");
+  f.number("heading_outlier_percent", heading_outlier_percent, {0, 100},
+           "of these headings, of any direction");
   wheel_fields(f);
   f.number("reference_rate_hz", reference_rate_hz, {0, 1000}, "true poses per second; 0: none");
 }

@@ -31,6 +31,8 @@ void CalibrateOptions::fields(ConfigFields& f) {
          "IMU to the point of the vehicle that does not slip sideways");
   f.text("cornering_compliance", cornering_compliance, {"auto", "on", "off"},
          "angle by which that point drifts outward in a bend, by its acceleration");
+  f.text("baseline_heading", baseline_heading, {"auto", "on", "off"},
+         "direction of the baseline of two antennas in the vehicle, what it was told wrong by");
   f.optional_number(
       "lever_arm_sigma_m", lever_arm_sigma_m, kPositive,
       "what is known of the lever arm before, 1 sigma an axis; not set: 0.05 where it "
@@ -47,6 +49,8 @@ void CalibrateOptions::fields(ConfigFields& f) {
            "what is known of the point that does not slip before, 1 sigma an axis");
   f.number("cornering_compliance_sigma", cornering_compliance_sigma, kPositive,
            "what is known of that before, 1 sigma [rad/(m/s^2)]");
+  f.number("baseline_heading_sigma_deg", baseline_heading_sigma_deg, {1e-3, 45},
+           "what is known of that direction before, 1 sigma");
   f.number("gyro_scale_sigma_ppm", gyro_scale_sigma_ppm, kPositive,
            "what is known of the gyroscopes' before, 1 sigma");
   f.number("accel_scale_sigma_ppm", accel_scale_sigma_ppm, kPositive,
@@ -73,6 +77,7 @@ CalibrateOptions CalibrateOptions::resolved(const Carried& carried) const {
   for (std::string* rolling : {&out.mounting, &out.wheel_lever_arm, &out.cornering_compliance})
     resolve(*rolling, carried.rolling || carried.wheel_speed);
   resolve(out.wheel_scale, carried.wheel_speed);
+  resolve(out.baseline_heading, carried.heading);
   return out;
 }
 
@@ -96,6 +101,8 @@ Layout CalibrateOptions::layout() const {
   if (cornering_compliance == "on")
     layout.add(block::cornering_compliance, cornering_compliance_sigma);
   if (wheel_scale == "on") layout.add(block::wheel_scale, wheel_scale_sigma);
+  if (baseline_heading == "on")
+    layout.add(block::baseline_heading, kDegree * baseline_heading_sigma_deg);
   return layout;
 }
 

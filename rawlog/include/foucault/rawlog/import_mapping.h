@@ -112,16 +112,18 @@ class PositionMapping : public TableMapping {
 
 /// More roles: sigma_north, sigma_east, sigma_down, or sigma_horizontal, sigma_vertical, or
 /// sigma_x, sigma_y, sigma_z; velocity_north, velocity_east, velocity_down or velocity_up, or
-/// velocity_x, velocity_y, velocity_z, or speed, bearing; sigma_velocity; quality;
-/// satellites, hdop, correction_age [s].
+/// velocity_x, velocity_y, velocity_z, or speed, bearing; sigma_velocity; heading (of two
+/// antennas), sigma_heading; quality; satellites, hdop, correction_age [s].
 class GnssMapping : public PositionMapping {
  public:
-  std::string bearing_unit = "auto";       ///< auto (as angle_unit) | deg | rad | e5 (1e-5 deg)
-  std::string sigma_unit = "m";            ///< of the columns of positions' sigmas
-  std::vector<double> sigma_m;             ///< north, east, down, where the file has none
-  bool velocity = true;                    ///< read the velocity columns
-  std::vector<double> velocity_sigma_m_s;  ///< north, east, down, where the file has none
-  std::string quality = "unknown";         ///< of all fixes, without a quality column
+  std::string bearing_unit = "auto";        ///< auto (as angle_unit) | deg | rad | e5 (1e-5 deg)
+  std::string sigma_unit = "m";             ///< of the columns of positions' sigmas
+  std::vector<double> sigma_m;              ///< north, east, down, where the file has none
+  bool velocity = true;                     ///< read the velocity columns
+  std::vector<double> velocity_sigma_m_s;   ///< north, east, down, where the file has none
+  std::string heading_unit = "deg";         ///< deg | rad, of the heading and its sigma
+  std::optional<double> heading_sigma_deg;  ///< where the file has none
+  std::string quality = "unknown";          ///< of all fixes, without a quality column
   std::map<std::string, std::string> quality_table;  ///< value -> fixed_rtk ... unknown, or none
 
   void fields(ConfigFields& f) override;

@@ -55,6 +55,14 @@ std::optional<GroundVelocity> decode_velocity(const mrpt::obs::CObservationGPS& 
 /// Messages of a fix; stamp, label and pose are the caller's.
 void encode_fix(const GnssFix& fix, mrpt::obs::CObservationGPS& gps);
 
+/// The heading of two antennas is the yaw of a pose in East-North-Up that bears this label and the
+/// stamp of its fix, of whose covariance nothing else is small.
+inline constexpr const char* kHeadingLabel = "HEADING";
+/// None if it or its sigma is no number, or the sigma is zero.
+std::optional<GnssHeading> decode_heading(const mrpt::obs::CObservationRobotPose& pose);
+/// Stamp and label are the caller's.
+void encode_heading(const GnssHeading& heading, mrpt::obs::CObservationRobotPose& pose);
+
 /// The INSPVAS of a reference system; of its own place and axes (forward-right-down).
 std::optional<ReferencePose> decode_reference(const mrpt::obs::CObservationGPS& gps, int64_t t_ns);
 void encode_reference(const ReferencePose& pose, mrpt::obs::CObservationGPS& gps);

@@ -15,7 +15,12 @@
 namespace foucault::calibration {
 
 /// Whose noise a measurement has.
-enum class NoiseOf { position, velocity, slip, wheel, rest };
+enum class NoiseOf { position, velocity, heading, slip, wheel, rest };
+
+/// Without satellites there is none of it.
+inline bool is_of_receiver(NoiseOf kind) {
+  return kind == NoiseOf::position || kind == NoiseOf::velocity || kind == NoiseOf::heading;
+}
 
 /// Something measured at a node: r = H error + noise, by rows whose noise is white, of one, as it
 /// was told. Afterwards the nominal state was moved by `correction`.

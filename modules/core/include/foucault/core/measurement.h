@@ -38,13 +38,21 @@ struct FixDetails {
   std::optional<double> correction_age;  ///< [s]
 };
 
-/// A GNSS position of the antenna, with velocity where the receiver gives one.
+/// Azimuth of the baseline between two antennas, clockwise from North.
+struct GnssHeading {
+  double azimuth = 0;   ///< [rad]
+  double sigma = 0;     ///< [rad]
+  double baseline = 0;  ///< told direction of the baseline in v, from forward to the right [rad]
+};
+
+/// A GNSS position of the antenna, with velocity and heading where the receiver gives them.
 struct GnssFix {
   int64_t t_ns = 0;
   Geodetic antenna;
   Eigen::Matrix3d position_covariance = Eigen::Matrix3d::Zero();  ///< north, east, down [m^2]
   std::optional<Eigen::Vector3d> velocity_n;                      ///< north, east, down [m/s]
   Eigen::Matrix3d velocity_covariance = Eigen::Matrix3d::Zero();  ///< [m^2/s^2]
+  std::optional<GnssHeading> heading;
   FixQuality quality = FixQuality::unknown;
   Eigen::Vector3d p_b_a = Eigen::Vector3d::Zero();  ///< lever arm, IMU to antenna, in b [m]
   bool lever_arm_known = true;                      ///< else p_b_a is zero for want of a better one

@@ -24,8 +24,12 @@ class AidOptions : public Configurable {
   std::string wheel_speed = "off";                    ///< auto | on | off
   std::optional<double> wheel_speed_sigma_m_s;        ///< not set: as the recording shows
 
+  std::string heading = "off";              ///< auto | on | off
+  std::optional<double> heading_sigma_deg;  ///< not set: the receiver's
+  double heading_baseline_deg = 0;
+
   void fields(ConfigFields& f) override;
-  /// Takes off a fix what is not to be used of it.
+  /// Takes off a fix what is not to be used of it, and tells it what was told of the rest.
   void apply_to(GnssFix& fix) const;
   bool uses_gnss_velocity() const { return mode != "none" && gnss_velocity == "on"; }
   bool uses(const std::string& aid) const { return mode != "none" && aid != "off"; }

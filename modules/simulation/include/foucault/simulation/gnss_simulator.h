@@ -15,7 +15,7 @@ namespace foucault::simulation {
 /// Quality: as told, or float_rtk while degraded.
 class GnssSimulator {
  public:
-  /// Reads the gnss_* fields, lever_arm_m, mounting_deg and seed.
+  /// Reads the gnss_* and heading_* fields, lever_arm_m, mounting_deg and seed.
   explicit GnssSimulator(const ScenarioOptions& options);
 
   /// The fix stamped t_ns, t [s] after the start, no earlier than the last one.
@@ -26,10 +26,12 @@ class GnssSimulator {
   /// In units of the sigmas, by axes.
   Eigen::Vector3d position_noise(double t);
 
+  GnssHeading heading(const Motion& motion);
+
   ScenarioOptions options_;
   Eigen::Vector3d p_b_a_;  ///< told
   Eigen::Vector3d p_v_a_;  ///< true
-  Draws position_draws_, velocity_draws_, coloured_draws_;
+  Draws position_draws_, velocity_draws_, coloured_draws_, heading_draws_;
   Eigen::Vector3d coloured_;           ///< sigma 1
   std::optional<double> coloured_at_;  ///< [s]
 };

@@ -30,7 +30,8 @@ enum class RandomStream : uint32_t {
   rectification,
   gnss_coloured,
   wheel,
-  slip
+  slip,
+  gnss_heading
 };
 
 /// Reproducible draws: the same seed and stream give the same numbers.

@@ -53,6 +53,11 @@ class ScenarioOptions : public Configurable {
   Eigen::Vector3d lever_arm_m{0.1, -0.3, -0.8};  ///< IMU to antenna, forward, right, down
   Eigen::Vector3d lever_arm_error_m = Eigen::Vector3d::Zero();
 
+  double heading_sigma_deg = 0;           ///< of the heading of two antennas in the fixes; 0: none
+  double heading_noise_factor = 1;        ///< true noise by that sigma
+  double heading_baseline_error_deg = 0;  ///< true direction of the baseline, forward is told
+  double heading_outlier_percent = 0;     ///< of any direction
+
   double wheel_rate_hz = 0;  ///< 0: no wheel speeds
   double wheel_scale_percent = 0, wheel_sigma_m_s = 0, wheel_step_m_s = 0;
   /// IMU to the point that follows the road and whose speed the wheels measure, forward, right,

@@ -25,7 +25,7 @@ struct NodeBlock : Block {
 
 constexpr int kMotionSize = 9;  ///< rows of position, velocity and attitude
 constexpr int kNodeSize = 15;
-constexpr int kMostSlow = 27;                     ///< rows of slow blocks
+constexpr int kMostSlow = 28;                     ///< rows of slow blocks
 constexpr int kMostSize = kNodeSize + kMostSlow;  ///< rows of a state
 
 /// Rows of a state with so many rows of slow blocks.
@@ -64,6 +64,9 @@ inline constexpr Block wheel_lever_arm{"wheel_lever_arm", 3, "m"};
 /// That point drifts outward in a bend, by an angle of so much times its acceleration to the side:
 /// tyres are springs.
 inline constexpr Block cornering_compliance{"cornering_compliance", 1, "rad/(m/s^2)"};
+/// Direction of the baseline between two antennas on the told axes of the vehicle, what it was told
+/// wrong by.
+inline constexpr Block baseline_heading{"baseline_heading", 1, "rad"};
 }  // namespace block
 
 using NodeVector = Eigen::Matrix<double, kNodeSize, 1>;

@@ -20,6 +20,7 @@ class CalibrateOptions : public Configurable {
   std::string time_offset = "auto", time_drift = "auto";
   std::string mounting = "auto", wheel_scale = "auto", wheel_lever_arm = "auto";
   std::string cornering_compliance = "auto";
+  std::string baseline_heading = "auto";
   /// Not set: 5 cm where the lever arm was given in the import, else 1 m.
   std::optional<double> lever_arm_sigma_m;
   double time_offset_sigma_s = 0.3;
@@ -28,6 +29,7 @@ class CalibrateOptions : public Configurable {
   double wheel_scale_sigma = 0.05;
   double wheel_lever_arm_sigma_m = 1.5;
   double cornering_compliance_sigma = 0.005;  ///< rear axles of cars have 1 to 8 mrad per m/s^2
+  double baseline_heading_sigma_deg = 5;
   double gyro_scale_sigma_ppm = 1000;
   double accel_scale_sigma_ppm = 1000;
   double gyro_cross_axis_sigma_ppm = 1000;
@@ -43,6 +45,7 @@ class CalibrateOptions : public Configurable {
   struct Carried {
     bool rolling = false;      ///< wheels were seen to roll without slip
     bool wheel_speed = false;  ///< and their speed to be that of the vehicle
+    bool heading = false;      ///< two antennas tell the heading
   };
   /// Blocks `on` or `off` in the place of `auto`; the noise stays as it is.
   CalibrateOptions resolved(const Carried& carried) const;
