@@ -239,7 +239,7 @@ Survey Surveyor::survey(const std::string& log, Settings settings) {
   if (untold) settings.imu = coarse(settings.imu);
   int questions = untold ? 2 : settings.calibrate.noise == "off" ? 0 : 1;
   const Settings told = settings;
-  bool told_is_believable = false;
+  bool told_is_believable = false, keeps_to_fixes = true;
   Survey found;
   const double told_sigma_s = settings.calibrate.time_offset_sigma_s;
   found.time_offset_s = settings.calibrate.time_offset_s;
@@ -249,8 +249,9 @@ Survey Surveyor::survey(const std::string& log, Settings settings) {
     found.failure.clear();
     const std::optional<Watcher> watcher =
         look_through(log, settings, questions > 0, console_, found.failure);
+    keeps_to_fixes = watcher && watcher->is_believable();
     if (!watcher) break;
-    if (!found.noise) told_is_believable = watcher->is_believable();
+    if (!found.noise) told_is_believable = keeps_to_fixes;
     found.blocks = evaluation::calibrated_blocks(
         state::as_users_know(*watcher->last, watcher->told), watcher->told.layout);
     found.told = evaluation::calibrated_blocks(state::prior_as_users_know(watcher->told),
@@ -284,7 +285,7 @@ Survey Surveyor::survey(const std::string& log, Settings settings) {
     if (!moves && !learns) break;
   }
   const bool is_news = found.noise && found.noise->is_news;
-  if (is_news && told.calibrate.noise == "auto" && !found.failure.empty() && told_is_believable) {
+  if (is_news && told.calibrate.noise == "auto" && !keeps_to_fixes && told_is_believable) {
     Settings without = told;
     without.calibrate.noise = "off";
     warn(log,
