@@ -44,6 +44,7 @@ class LayoutMaker {
 
   Layout make() {
     place_header();
+    widths_ = plot_widths();
     place_rows();
     const std::vector<double> left = left_margins();
     for (int i = 0; i < int(figure_.panels.size()); ++i) place_panel(i, left);
@@ -84,10 +85,11 @@ class LayoutMaker {
 
   /// The note in as few lines as have room, the first of them beside the title; one line even if it
   /// is empty where there is a title.
-  std::vector<std::string> note_lines(const Panel& panel) {
+  std::vector<std::string> note_lines(int i) {
+    const Panel& panel = figure_.panels[size_t(i)];
     if (panel.title.empty() && panel.note.empty()) return {};
     constexpr const char* kBetween = " · ";
-    const double width = column_width() - millimetres(23);  // of the plot, beside long tick labels
+    const double width = widths_[size_t(column(i))];
     const double title = typesetter_.width(panel.title, style::kAxisPoints, true);
     std::vector<std::string> lines{""};
     for (const std::string& part : parted(panel.note, kBetween)) {
@@ -106,7 +108,7 @@ class LayoutMaker {
 
   double above(int i) {
     const Panel& panel = figure_.panels[size_t(i)];
-    double height = style::kAboveData + style::kHeadLine * double(note_lines(panel).size());
+    double height = style::kAboveData + style::kHeadLine * double(note_lines(i).size());
     if (const std::optional<Legend> legend = panel_legend(panel)) height += legend->height();
     return height;
   }
@@ -167,11 +169,27 @@ class LayoutMaker {
     return width;
   }
 
+  /// As long as rows are not placed, about that of each: labels of ticks hardly depend on it.
+  double length_of_row(int r) const {
+    if (!row_tracks_.empty()) return row_tracks_[size_t(r)].length;
+    return std::max(millimetres(8), (layout_.page.height - top_) / rows_ - millimetres(15));
+  }
+
+  /// Of each column, which what stands above its panels has to fit.
+  std::vector<double> plot_widths() {
+    std::vector<double> widths = left_margins();
+    for (int c = 0; c < columns_; ++c) {
+      double& width = widths[size_t(c)];
+      width = column_width() - width - right_margin(c);
+    }
+    return widths;
+  }
+
   std::vector<double> left_margins() {
     std::vector<double> margins(size_t(columns_), 0);
     for (int i = 0; i < int(figure_.panels.size()); ++i) {
       const Panel& panel = figure_.panels[size_t(i)];
-      const Ticks ticks = y_ticks(panel, row_tracks_[size_t(row(i))].length);
+      const Ticks ticks = y_ticks(panel, length_of_row(row(i)));
       double margin = label_width(ticks) + style::kTickLength + millimetres(1.2);
       if (!axis_title(panel.y, ticks).empty()) margin += millimetres(5.8);
       margins[size_t(column(i))] = std::max(margins[size_t(column(i))], margin);
@@ -258,7 +276,7 @@ class LayoutMaker {
     const AxisScale y(panel.y, up, plot.br().y, plot.y);
     layout_.panels.push_back({&panel, plot, x, y, x_ticks(x, plot.width), y_ticks(y, plot.height),
                               colour_scale(panel, plot), has_x_labels(i), column_begin(int(c)),
-                              panel_legend(panel), note_lines(panel)});
+                              panel_legend(panel), note_lines(i)});
   }
 
   const Figure& figure_;
@@ -267,6 +285,7 @@ class LayoutMaker {
   int rows_ = 1;
   double top_ = 0;
   std::vector<Track> row_tracks_;
+  std::vector<double> widths_;
   Layout layout_;
 };
 
