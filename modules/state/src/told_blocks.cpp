@@ -35,15 +35,12 @@ Epoch as_users_know(const Epoch& epoch, const Told& told) {
 
 Epoch prior_as_users_know(const Told& told) {
   Epoch prior = with_slow_blocks({}, told.layout);
-  const SlowMatrix covariance = slow_part(prior.covariance);
-  if (const SlowBlock* mounting = told.layout.find(block::mounting)) {
-    part(prior.covariance, *mounting, *mounting).setZero();
-  }
+  const SlowBlock* mounting = told.layout.find(block::mounting);
+  if (!mounting) return as_users_know(prior, told);
+  const Eigen::Matrix2d of_mounting = part(prior.covariance, *mounting, *mounting);
+  part(prior.covariance, *mounting, *mounting).setZero();
   prior = as_users_know(prior, told);
-  if (const SlowBlock* mounting = told.layout.find(block::mounting)) {
-    part(prior.covariance, *mounting, *mounting) =
-        covariance.block<2, 2>(mounting->index, mounting->index);
-  }
+  part(prior.covariance, *mounting, *mounting) = of_mounting;
   return prior;
 }
 
